@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: MIT
+# Flags of this project's own tests, examples and benchmarks. They are linked PRIVATE and never reach a user's build.
+set(CMAKE_CXX_EXTENSIONS OFF)
+option(GENRENDER_WARNINGS_AS_ERRORS "Refuse code of this project that warns" OFF)
+set(GENRENDER_SANITIZERS "" CACHE STRING "Value of -fsanitize= for tests and examples: empty, address,undefined or thread")
+
+add_library(genrender_developer_flags INTERFACE)
+target_compile_options(genrender_developer_flags INTERFACE
+    -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow
+    $<$<BOOL:${GENRENDER_WARNINGS_AS_ERRORS}>:-Werror>
+    # g++ 12 warns in optimised code of xtensor's sorting functions, and does so after it forgot that they are a system header.
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
+
+if(GENRENDER_SANITIZERS)
+    target_compile_options(genrender_developer_flags INTERFACE
+        -fsanitize=${GENRENDER_SANITIZERS} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+    target_link_options(genrender_developer_flags INTERFACE -fsanitize=${GENRENDER_SANITIZERS})
+endif()

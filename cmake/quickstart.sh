@@ -1,0 +1,135 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# From a fresh clone on a fresh Debian 12 or Ubuntu 24.04 to a result, in one command and without a question.
+set -eu
+
+usage() {
+    cat <<'TEXT'
+sh cmake/quickstart.sh WHAT
+
+  demo      render an animation with the built-in network, and the same frame by frame   (build/demo_output)
+  test      everything that continuous integration checks: g++, clang++ with sanitizers, headers, package
+  bench     the benchmarks, compiled for this machine's processor
+  packages  install the Debian packages that demo, test and bench need, and do no more
+
+Packages that are missing are installed with apt-get; nothing is downloaded when all are there.
+TEXT
+}
+
+# What the library and its examples are built from.
+demo_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev
+    libassimp-dev libbullet-dev libopenexr-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev"
+bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libbenchmark-dev"
+# What its tests need besides.
+test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels"
+
+say() {
+    printf '\n== %s\n' "$*"
+}
+
+stop() {
+    printf '%s\n' "$*" >&2
+    exit 1
+}
+
+# Prints those of the packages given that are not installed.
+missing_packages() {
+    for package in "$@"; do
+        case $(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null) in
+            installed) ;;
+            *) printf ' %s' "$package" ;;
+        esac
+    done
+}
+
+# Runs a command as root, without asking for a password.
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    else
+        sudo -n "$@"
+    fi
+}
+
+install_packages() {
+    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+        stop "This script installs packages on Debian 12, Ubuntu 24.04 and newer. On this system, install by hand
+  a C++20 compiler (g++ 12 or clang++ 14, or newer), CMake 3.25, Ninja, pkg-config,
+  Eigen 3.4, xtensor 0.24, GLM 0.9.9; for the examples assimp 5, Bullet 3, OpenEXR 3, libpng, libwebp, CLI11 2,
+  nlohmann_json 3; for the tests doctest 2.4 and Google Benchmark 1.7
+and then run: cmake --workflow --preset demo (or test, or bench)"
+    fi
+    missing=$(missing_packages "$@")
+    if [ -n "$missing" ]; then
+        if [ "$(id -u)" -ne 0 ] && ! sudo -n true 2>/dev/null; then
+            stop "Packages are missing and this user may not install them. Run
+  sudo apt-get update && sudo apt-get install --no-install-recommends$missing
+and then this script again."
+        fi
+        say "Installing$missing"
+        as_root apt-get -q update
+        # shellcheck disable=SC2086 # a list of words
+        as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 \
+            install --no-install-recommends $missing
+    fi
+    if ! printf '3.25\n%s\n' "$(cmake --version | sed -n 's/^cmake version //p')" | sort -V -C; then
+        stop "CMake is $(cmake --version | sed -n 's/^cmake version //p'), and 3.25 or newer is needed: that of Debian 12 or Ubuntu 24.04."
+    fi
+}
+
+# Configures, builds and tests one preset of CMakePresets.json.
+workflow() {
+    say "Preset $1"
+    # Sanitizers of clang 14 cannot place their shadow memory in every randomised layout of newer kernels.
+    if setarch "$(uname -m)" -R true 2>/dev/null; then
+        setarch "$(uname -m)" -R cmake --workflow --preset "$1"
+    else
+        cmake --workflow --preset "$1"
+    fi
+}
+
+demo() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $demo_packages
+    workflow demo
+    output=build/demo_output
+    for method in generative_rendering per_frame; do
+        say "Rendering, method $method"
+        build/demo/examples/generative_rendering --scene walking_figure --prompt "a porcelain figure on a meadow" \
+            --method "$method" --out "$output/$method"
+    done
+    say "Done: the same noise and network, once frame by frame and once with consistent features"
+    find "$output" -maxdepth 2 -type f | sort
+}
+
+run_tests() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $test_packages
+    workflow test
+    workflow asan
+    workflow tsan
+    say "All tests passed"
+}
+
+bench() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $bench_packages
+    workflow bench
+    for program in build/bench/benchmarks/genrender_*_bench; do
+        say "$program"
+        "$program"
+    done
+}
+
+cd "$(dirname "$0")/.."
+case ${1-} in
+    demo) demo ;;
+    test) run_tests ;;
+    bench) bench ;;
+    packages) # shellcheck disable=SC2086 # a list of words
+        install_packages $test_packages ;;
+    *)
+        usage >&2
+        exit 2
+        ;;
+esac

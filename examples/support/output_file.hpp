@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// A file being written: it appears under its own name when it is whole, or not at all.
+#pragma once
+
+#include <genrender/core/error.hpp>
+
+#include <atomic>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <system_error>
+
+#include <unistd.h>
+
+namespace genrender::examples {
+
+/// Makes `folder` and its parents. Throws file_error that names the folder if it cannot be made.
+inline void make_folder(std::filesystem::path const& folder) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (!std::filesystem::is_directory(folder)) {
+        throw file_error(folder.string() + ": is no folder and cannot be made one (" + failure.message() +
+                         "), expected a place that can be written");
+    }
+}
+
+/// Reserves a temporary name beside `path`; `commit()` moves what was written there to `path`, replacing what was there
+/// before. Without a commit the temporary file is removed and `path` stays as it was.
+class output_file {
+public:
+    /// Makes the folder of `path` where it is missing. Throws file_error if that folder cannot be written.
+    explicit output_file(std::filesystem::path path) : path_(std::move(path)) {
+        static std::atomic<unsigned> count{0};
+        auto folder = path_.parent_path();
+        folder = folder.empty() ? "." : folder;
+        make_folder(folder);
+        temporary_ = folder / ("." + path_.filename().string() + "." + std::to_string(::getpid()) + "-" +
+                               std::to_string(count++) + ".part");
+        if (!std::ofstream(temporary_, std::ios::binary)) {
+            throw file_error(folder.string() + ": cannot be written, expected a folder where files may be made");
+        }
+    }
+
+    output_file(output_file const&) = delete;
+    output_file& operator=(output_file const&) = delete;
+
+    ~output_file() {
+        std::error_code ignored;
+        std::filesystem::remove(temporary_, ignored);
+    }
+
+    /// Where to write.
+    std::filesystem::path const& temporary() const { return temporary_; }
+
+    /// Gives the file its name. Throws file_error if it cannot have it.
+    void commit() {
+        std::error_code failure;
+        std::filesystem::rename(temporary_, path_, failure);
+        if (failure) {
+            throw file_error(path_.string() + ": cannot be replaced (" + failure.message() + "), expected a file name");
+        }
+    }
+
+private:
+    std::filesystem::path path_;
+    std::filesystem::path temporary_;
+};
+
+/// Writes `bytes` as the whole of `path`, or leaves it as it was. Throws file_error if it cannot be written.
+inline void write_bytes(std::filesystem::path const& path, std::span<std::uint8_t const> bytes) {
+    output_file file(path);
+    std::ofstream stream(file.temporary(), std::ios::binary | std::ios::trunc);
+    stream.write(reinterpret_cast<char const*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    if (!stream) {
+        throw file_error(path.string() + ": not all of its " + std::to_string(bytes.size()) +
+                         " bytes could be written, expected room on the disk");
+    }
+    file.commit();
+}
+
+} // namespace genrender::examples

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3.1] The front door of attention: what runs in place of a self-attention module.
+#pragma once
+
+#include <genrender/attention/attention_call.hpp>
+
+#include <concepts>
+
+namespace genrender {
+
+/// Runs in place of a self-attention module and returns its output.
+///
+/// expression        | type                       | meaning
+/// ------------------|----------------------------|---------------------------------------------------------------------
+/// `processor(call)` | `Call::features_type`      | F [frames, tokens, channels], the output of the module for all frames
+///                   |                            | of the call, before the residual is added
+///
+/// These the compiler cannot check, and a model owes them: F has the extents of `call.f()`; calls at different places, or for
+/// different frames, may run at the same time on several threads; the processor keeps no reference to the call.
+/// It does not require to be copied, to know a network, or to be called in any order of sites.
+///
+/// See also: plain_attention, recorder, injector and the baselines, which are models; attention_call, what it is given;
+/// feature_io_processor, the same contract for engines whose graph is static.
+template <class Processor, class Call>
+concept attention_processor = attention_call<Call> && requires(Processor& processor, Call& call) {
+    { processor(call) } -> std::convertible_to<typename Call::features_type>;
+};
+
+/// The least that an attention_processor is, for checking denoisers; never run.
+struct attention_processor_archetype {
+    template <attention_call Call>
+    typename Call::features_type operator()(Call& call);
+};
+
+} // namespace genrender

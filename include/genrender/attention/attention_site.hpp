@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3.1] Where in a network self-attention happens, and for which guidance branch.
+#pragma once
+
+#include <genrender/core/index.hpp>
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace genrender {
+
+/// Which of the networks that a denoiser runs holds a self-attention module.
+enum class network_kind : std::uint8_t {
+    denoiser, ///< the network that predicts the latents
+    control   ///< a ControlNet or the like beside it, whose attention is usually left alone
+};
+
+/// Which part of the network holds it.
+enum class network_part : std::uint8_t { encoder, middle, decoder };
+
+/// One self-attention module of a denoiser, described once for all calls.
+struct attention_site {
+    std::string name;     ///< as the engine calls it, say `up_blocks.1.attentions.0.transformer_blocks.0.attn1`
+    network_kind network = network_kind::denoiser;
+    network_part part = network_part::decoder;
+    grid_extents grid;    ///< of its feature map; tokens are row * width + column
+    std::size_t channels = 0;
+};
+
+/// Position of a site in its denoiser's list of sites.
+struct site_index {
+    std::uint32_t value = 0;
+    friend constexpr auto operator<=>(site_index, site_index) = default;
+};
+
+/// One run of a site: features of different guidance branches (the unconditional and the conditional one of classifier-free
+/// guidance) never meet.
+struct attention_place {
+    site_index site;
+    std::uint32_t branch = 0;
+    friend constexpr auto operator<=>(attention_place, attention_place) = default;
+};
+
+} // namespace genrender

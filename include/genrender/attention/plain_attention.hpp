@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// [GR eq. 1, 2] The processor that leaves a network as it is: every frame attends to itself.
+#pragma once
+
+#include <genrender/attention/attention_call.hpp>
+
+#include <cstddef>
+
+namespace genrender {
+
+/// The sources of a network's own self-attention: frame i attends to frame i of K and V. The result points to K and V.
+template <class Features>
+attention_sources<Features> own_attention_sources(Features const& K, Features const& V, std::size_t frames) {
+    attention_sources<Features> sources(frames);
+    for (std::size_t i = 0; i < frames; ++i) {
+        sources[i] = {{&K, &V, i}};
+    }
+    return sources;
+}
+
+/// Runs the module as the network has it.
+struct plain_attention {
+    /// F of eq. 1 with the queries, keys and values of eq. 2.
+    template <attention_call Call>
+    typename Call::features_type operator()(Call& call) const {
+        auto const f = call.f();
+        auto const Q = call.query(f);
+        auto const K = call.key(f);
+        auto const V = call.value(f);
+        return call.attend(Q, own_attention_sources(K, V, call.frames().size()));
+    }
+};
+
+} // namespace genrender

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Counter-based random numbers: any value of any stream by its address, in any order, on any thread (Salmon et al., SC 2011).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace genrender {
+
+/// Which sequence of random numbers: values of different streams are independent for the same seed and address.
+enum class random_stream : std::uint32_t { texture_noise = 1, background_noise, frame_noise, keyframes, weights, test };
+
+namespace detail {
+
+constexpr void philox_round(std::array<std::uint32_t, 4>& counter, std::array<std::uint32_t, 2> const& key) {
+    auto const product_0 = std::uint64_t{0xD2511F53U} * counter[0];
+    auto const product_1 = std::uint64_t{0xCD9E8D57U} * counter[2];
+    counter = {static_cast<std::uint32_t>(product_1 >> 32) ^ counter[1] ^ key[0], static_cast<std::uint32_t>(product_1),
+               static_cast<std::uint32_t>(product_0 >> 32) ^ counter[3] ^ key[1], static_cast<std::uint32_t>(product_0)};
+}
+
+} // namespace detail
+
+/// 128 random bits for a 128-bit counter and a 64-bit key: Philox4x32-10 (Salmon et al., 'Parallel Random Numbers: As Easy
+/// as 1, 2, 3', SC 2011, sec. 4.3), whose published test vectors the tests hold.
+constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) {
+    for (int round = 0; round < 10; ++round) {
+        if (round > 0) {
+            key[0] += 0x9E3779B9U;
+            key[1] += 0xBB67AE85U;
+        }
+        detail::philox_round(counter, key);
+    }
+    return counter;
+}
+
+/// The address of one random value: three coordinates of the caller's choosing within a stream (object, texel, channel; step,
+/// draw; ...).
+using random_address = std::array<std::uint32_t, 3>;
+
+/// Random bits at an address; the same for the same seed, stream and address, on every machine.
+constexpr std::array<std::uint32_t, 4> random_bits(std::uint64_t seed, random_stream stream, random_address address) {
+    return philox({address[0], address[1], address[2], static_cast<std::uint32_t>(stream)},
+                  {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)});
+}
+
+/// A value uniform in [0, 1).
+constexpr double uniform_value(std::uint64_t seed, random_stream stream, random_address address) {
+    auto const bits = random_bits(seed, stream, address);
+    return static_cast<double>((std::uint64_t{bits[0]} << 21) ^ (bits[1] >> 11)) * 0x1p-53;
+}
+
+/// A whole number uniform in [0, bound), bound > 0, with a bias below bound / 2^64.
+constexpr std::uint32_t uniform_below(std::uint32_t bound, std::uint64_t seed, random_stream stream,
+                                      random_address address) {
+    auto const bits = random_bits(seed, stream, address);
+    // Multiply a 64-bit fraction by the bound and keep the whole part, in two 32-bit halves.
+    auto const low = (std::uint64_t{bits[1]} * bound) >> 32;
+    return static_cast<std::uint32_t>((std::uint64_t{bits[0]} * bound + low) >> 32);
+}
+
+/// A value of N(0, 1), by the Box-Muller transform in double precision; never infinite (at most 8.58 in magnitude).
+inline double normal_value(std::uint64_t seed, random_stream stream, random_address address) {
+    auto const bits = random_bits(seed, stream, address);
+    auto const u = (static_cast<double>((std::uint64_t{bits[0]} << 21) ^ (bits[1] >> 11)) + 0.5) * 0x1p-53;
+    auto const turn = (static_cast<double>(bits[2]) + 0.5) * 0x1p-32;
+    return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * turn);
+}
+
+} // namespace genrender

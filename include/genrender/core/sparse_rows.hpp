@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// A sparse linear map between token rows as three plain arrays, which an engine can hand to its own gather operation.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace genrender {
+
+/// For every row of the result, a short weighted sum of source rows (compressed sparse rows):
+///     result[r] = sum over e in [offsets[r], offsets[r + 1]) of weights[e] * source[sources[e]].
+/// A row without entries is not covered: the result there is the reader's own.
+template <class Real>
+struct sparse_rows {
+    std::span<std::uint32_t const> offsets; ///< rows + 1 of them, rising from 0
+    std::span<std::uint32_t const> sources; ///< number of the source row, one per entry
+    std::span<Real const> weights;          ///< one per entry
+
+    std::size_t row_count() const { return offsets.empty() ? 0 : offsets.size() - 1; }
+    bool is_covered(std::size_t row) const { return offsets[row] < offsets[row + 1]; }
+};
+
+} // namespace genrender

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Everything, in the order the data flows; without the reference network (models) and the bridges to engines (adapters).
+#pragma once
+
+#include <genrender/core/error.hpp>
+#include <genrender/core/index.hpp>
+#include <genrender/core/linalg.hpp>
+#include <genrender/core/parallel.hpp>
+#include <genrender/core/random.hpp>
+#include <genrender/core/sparse_rows.hpp>
+#include <genrender/core/stack.hpp>
+#include <genrender/core/strided_view.hpp>
+#include <genrender/core/tensor.hpp>
+
+#include <genrender/scene/animation.hpp>
+#include <genrender/scene/bounds.hpp>
+#include <genrender/scene/camera.hpp>
+#include <genrender/scene/mesh.hpp>
+#include <genrender/scene/primitives.hpp>
+#include <genrender/scene/skinning.hpp>
+#include <genrender/scene/triangle_coverage.hpp>
+#include <genrender/scene/uv_overlap.hpp>
+
+#include <genrender/guidance/background_mask.hpp>
+#include <genrender/guidance/depth_maps.hpp>
+#include <genrender/guidance/frame_rasterizer.hpp>
+#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/guidance/uv_convention.hpp>
+#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/guidance/uv_report.hpp>
+
+#include <genrender/correspondence/correspondence_map.hpp>
+#include <genrender/correspondence/reproject.hpp>
+#include <genrender/correspondence/surface_sample.hpp>
+#include <genrender/correspondence/texel_grid.hpp>
+#include <genrender/correspondence/texture_projection.hpp>
+#include <genrender/correspondence/visible_texels.hpp>
+
+#include <genrender/noise/initial_noise.hpp>
+#include <genrender/noise/noise_texture.hpp>
+
+#include <genrender/attention/attention_call.hpp>
+#include <genrender/attention/attention_processor.hpp>
+#include <genrender/attention/attention_site.hpp>
+#include <genrender/attention/extended_attention.hpp>
+#include <genrender/attention/host_features.hpp>
+#include <genrender/attention/plain_attention.hpp>
+#include <genrender/attention/scaled_dot_product.hpp>
+
+#include <genrender/sampling/classifier_free_guidance.hpp>
+#include <genrender/sampling/denoiser.hpp>
+#include <genrender/sampling/dpmpp_2m.hpp>
+#include <genrender/sampling/euler.hpp>
+#include <genrender/sampling/heun.hpp>
+#include <genrender/sampling/karras_schedule.hpp>
+#include <genrender/sampling/noise_schedule.hpp>
+#include <genrender/sampling/preconditioning.hpp>
+#include <genrender/sampling/sampler.hpp>
+#include <genrender/sampling/sampler_arguments.hpp>
+
+#include <genrender/keyframes/draw_keyframes.hpp>
+#include <genrender/keyframes/feature_bank.hpp>
+#include <genrender/keyframes/recorder.hpp>
+
+#include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/mix_rows.hpp>
+#include <genrender/blending/texel_weights.hpp>
+
+#include <genrender/injection/feature_io.hpp>
+#include <genrender/injection/host_attention_call.hpp>
+#include <genrender/injection/injector.hpp>
+#include <genrender/injection/post_attention.hpp>
+#include <genrender/injection/pre_attention.hpp>
+
+#include <genrender/normalization/adain.hpp>
+#include <genrender/normalization/channel_statistics.hpp>

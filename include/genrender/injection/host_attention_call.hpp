@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// [GR eq. 1-6] The attention call of an engine whose features lie in host memory: all it brings is its projections.
+#pragma once
+
+#include <genrender/attention/attention_call.hpp>
+#include <genrender/attention/host_features.hpp>
+#include <genrender/attention/scaled_dot_product.hpp>
+#include <genrender/core/parallel.hpp>
+#include <genrender/injection/post_attention.hpp>
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// What an engine brings of a self-attention module: each of `query`, `key`, `value` writes W f [tokens, channels] for the
+/// features f [tokens, channels] of one frame (out-argument first).
+template <class Projections, class Real>
+concept attention_projections = requires(Projections const& module, strided_view<Real, 2> out, strided_view<Real const, 2> f) {
+    module.query(out, f);
+    module.key(out, f);
+    module.value(out, f);
+    { module.heads() } -> std::convertible_to<std::size_t>;
+};
+
+/// A model of attention_call over views: `f` is read where the engine keeps it, results are new memory that the handle owns.
+/// Frames run through `Loop`.
+template <class Real, attention_projections<Real> Projections, parallel_loop Loop = sequential_loop>
+class host_attention_call {
+public:
+    using real_type = Real;
+    using features_type = host_features<Real>;
+
+    /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]. Throws shape_error if f has
+    /// another number of frames. `frames`, f and `module` must outlive the call.
+    host_attention_call(attention_place place, std::span<frame_index const> frames, features_type f,
+                        Projections const& module, Loop const& loop = {})
+        : place_(place), frames_(frames), f_(std::move(f)), module_(&module), loop_(&loop) {
+        require_extents("host_attention_call", "f", f_.extents(),
+                        std::array{frames.size(), f_.extents()[1], f_.extents()[2]});
+    }
+
+    attention_place place() const { return place_; }
+    std::span<frame_index const> frames() const { return frames_; }
+    features_type f() const { return f_; }
+
+    features_type query(features_type const& f) const {
+        return projected(f, [this](auto out, auto in) { module_->query(out, in); });
+    }
+    features_type key(features_type const& f) const {
+        return projected(f, [this](auto out, auto in) { module_->key(out, in); });
+    }
+    features_type value(features_type const& f) const {
+        return projected(f, [this](auto out, auto in) { module_->value(out, in); });
+    }
+
+    /// [GR eq. 1] for every frame of Q over its own list of blocks.
+    features_type attend(features_type const& Q, attention_sources<features_type> const& sources) const {
+        require_extents("host_attention_call::attend", "sources", std::array{sources.size()}, std::array{Q.extents()[0]});
+        auto F = features_type::allocate(Q.extents());
+        (*loop_)(sources.size(), [&](std::size_t i) {
+            std::vector<key_value_view<Real>> blocks;
+            blocks.reserve(sources[i].size());
+            for (auto const& block : sources[i]) {
+                blocks.push_back({block.K->view()[block.frame], block.V->view()[block.frame]});
+            }
+            scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads());
+        });
+        return F;
+    }
+
+    /// [GR eq. 6] in place of F_hat.
+    features_type mix(features_type const& F_hat, features_type const& F_KF, std::span<sparse_rows<Real> const> rows,
+                      Real alpha) const {
+        require_extents("host_attention_call::mix", "rows", std::array{rows.size()}, std::array{F_hat.extents()[0]});
+        (*loop_)(rows.size(), [&](std::size_t i) { post_attention(F_hat.view()[i], F_KF.view(), rows[i], alpha); });
+        return F_hat;
+    }
+
+private:
+    template <class Projection>
+    features_type projected(features_type const& f, Projection const& project) const {
+        auto out = features_type::allocate(f.extents());
+        (*loop_)(f.extents()[0], [&](std::size_t i) {
+            project(out.view()[i], strided_view<Real const, 2>(f.view()[i]));
+        });
+        return out;
+    }
+
+    attention_place place_;
+    std::span<frame_index const> frames_;
+    features_type f_;
+    Projections const* module_;
+    Loop const* loop_;
+};
+
+} // namespace genrender

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1: Phi(z^i, D^i, c, f_KF, F_bar^i)] The processor of the injected pass: eq. 5 before attention, eq. 6 after it.
+#pragma once
+
+#include <genrender/attention/plain_attention.hpp>
+#include <genrender/core/sparse_rows.hpp>
+#include <genrender/injection/pre_attention.hpp>
+#include <genrender/keyframes/feature_bank.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// What an injector does where the bank holds features.
+template <class Real>
+struct injection_settings {
+    bool pre_attention = true;  ///< eq. 5; without it a frame attends to itself alone
+    bool post_attention = true; ///< eq. 6; without it F_out = F_hat
+    /// alpha of eq. 6 at a site.
+    std::function<Real(site_index)> alpha = [](site_index) { return Real(0.7); };
+    /// A frame that is itself a keyframe finds its tokens twice in [f^i, f_KF], as eq. 5 has it; false drops the second copy.
+    bool keeps_own_copy = true;
+};
+
+/// Runs frames with the features of the keyframes. At places where the bank holds nothing the network stays as it is.
+template <class Features, class Real>
+class injector {
+public:
+    /// Rows of the blend plan of a frame at a site; called for frames of the calls alone.
+    using rows_of = std::function<sparse_rows<Real>(site_index, frame_index)>;
+
+    /// Injects from `bank`, recorded of `keyframes` in this order; both must outlive the injector.
+    injector(feature_bank<Features> const& bank, std::span<frame_index const> keyframes, rows_of rows,
+             injection_settings<Real> settings)
+        : bank_(&bank), keyframes_(keyframes), rows_(std::move(rows)), settings_(std::move(settings)) {}
+
+    /// F_out of eq. 6, where F_hat attends over the sources of eq. 5.
+    template <attention_call Call>
+    Features operator()(Call& call) const {
+        auto const frames = call.frames();
+        auto const* const kept = bank_->find(call.place());
+        auto const f = call.f();
+        auto const Q = call.query(f);
+        auto const K = call.key(f);
+        auto const V = call.value(f);
+        auto sources = own_attention_sources(K, V, frames.size());
+        if (kept != nullptr && settings_.pre_attention) {
+            for (std::size_t i = 0; i < frames.size(); ++i) {
+                sources[i] = pre_attention_sources(K, V, i, *kept->K_KF, *kept->V_KF, keyframes_.size(),
+                                                   left_out(frames[i]));
+            }
+        }
+        Features F_hat = call.attend(Q, sources);
+        if (kept == nullptr || !settings_.post_attention) {
+            return F_hat;
+        }
+        auto const rows = rows_at(call.place().site, frames);
+        return call.mix(F_hat, *kept->F_KF, rows, settings_.alpha(call.place().site));
+    }
+
+    /// f_KF that frames join to their own features at a place (eq. 5); null where nothing is injected. For engines whose graph
+    /// is static.
+    Features const* joined_features(attention_place place) const {
+        auto const* const kept = bank_->find(place);
+        return kept != nullptr && settings_.pre_attention && kept->f_KF ? &*kept->f_KF : nullptr;
+    }
+
+    /// F_KF that eq. 6 mixes in at a place; null where nothing is injected.
+    Features const* blended_features(attention_place place) const {
+        auto const* const kept = bank_->find(place);
+        return kept != nullptr && settings_.post_attention ? &*kept->F_KF : nullptr;
+    }
+
+    /// The plan's rows of each frame at a site: F_bar^i = rows[i] * F_KF.
+    std::vector<sparse_rows<Real>> rows_at(site_index site, std::span<frame_index const> frames) const {
+        std::vector<sparse_rows<Real>> rows;
+        rows.reserve(frames.size());
+        for (auto const frame : frames) {
+            rows.push_back(rows_(site, frame));
+        }
+        return rows;
+    }
+
+    /// alpha of eq. 6 at a site.
+    Real alpha(site_index site) const { return settings_.alpha(site); }
+
+    /// The position in the drawn keyframes whose tokens a frame does not join, if there is one.
+    std::optional<std::size_t> left_out(frame_index frame) const {
+        auto const found = std::find(keyframes_.begin(), keyframes_.end(), frame);
+        if (settings_.keeps_own_copy || found == keyframes_.end()) {
+            return std::nullopt;
+        }
+        return static_cast<std::size_t>(found - keyframes_.begin());
+    }
+
+private:
+    feature_bank<Features> const* bank_;
+    std::span<frame_index const> keyframes_;
+    rows_of rows_;
+    injection_settings<Real> settings_;
+};
+
+} // namespace genrender

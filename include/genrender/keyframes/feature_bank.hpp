@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1: f_KF, F_KF] The keyframes' features of one step, by attention site and guidance branch.
+#pragma once
+
+#include <genrender/attention/attention_site.hpp>
+#include <genrender/core/error.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// Features of all keyframes at one place; each a stack [keyframes, tokens, channels] in the drawn order.
+template <class Features>
+struct keyframe_features {
+    std::optional<Features> f_KF; ///< input of the module; recorded where the engine's graph projects it itself
+    std::optional<Features> K_KF; ///< W^K f_KF and
+    std::optional<Features> V_KF; ///< W^V f_KF, projected once a step; recorded where the processor runs the module
+    std::optional<Features> F_KF; ///< output of the module
+};
+
+/// Holds one keyframe_features per site and branch. Different places may be filled at the same time.
+template <class Features>
+class feature_bank {
+public:
+    feature_bank(std::size_t sites, std::size_t branches) : branches_(branches), places_(sites * branches) {}
+
+    /// Keeps the features of a place, replacing earlier ones. Throws value_error if the place does not exist.
+    void put(attention_place place, keyframe_features<Features> features) {
+        places_[position(place)] = std::move(features);
+    }
+
+    /// The features of a place; null where nothing was recorded.
+    keyframe_features<Features> const* find(attention_place place) const {
+        auto const& entry = places_[position(place)];
+        return entry ? &*entry : nullptr;
+    }
+
+private:
+    std::size_t position(attention_place place) const {
+        auto const at = place.site.value * branches_ + place.branch;
+        require_value(place.branch < branches_ && at < places_.size(), "feature_bank", "place",
+                      "site " + std::to_string(place.site.value) + " branch " + std::to_string(place.branch),
+                      (std::to_string(places_.size() / branches_) + " sites with " + std::to_string(branches_) + " branches")
+                          .c_str());
+        return at;
+    }
+
+    std::size_t branches_;
+    std::vector<std::optional<keyframe_features<Features>>> places_;
+};
+
+} // namespace genrender

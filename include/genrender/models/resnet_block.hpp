@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The residual block of the UNet (diffusers' ResnetBlock2D): two convolutions, told of the time between them.
+#pragma once
+
+#include <genrender/models/activation.hpp>
+#include <genrender/models/conv2d.hpp>
+#include <genrender/models/feature_maps.hpp>
+#include <genrender/models/forward_pass.hpp>
+#include <genrender/models/group_norm.hpp>
+#include <genrender/models/linear.hpp>
+#include <genrender/models/unet_config.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace genrender {
+
+/// shortcut(x) + conv2(silu(norm2(conv1(silu(norm1(x))) + W time))); the shortcut is a 1x1 convolution where the number of
+/// channels changes, else x itself.
+template <class Real>
+class resnet_block {
+public:
+    /// Takes `name.norm1`, `.conv1`, `.time_emb_proj`, `.norm2`, `.conv2` and, where channels change, `.conv_shortcut`.
+    resnet_block(unet_config const& config, weights<Real>& source, std::string const& name, std::size_t in, std::size_t out)
+        : norm1_(source, name + ".norm1", in, config.norm_num_groups, Real(1e-5)),
+          conv1_(source, name + ".conv1", in, out),
+          time_emb_proj_(source, name + ".time_emb_proj", config.time_channels(), out),
+          norm2_(source, name + ".norm2", out, config.norm_num_groups, Real(1e-5)),
+          conv2_(source, name + ".conv2", out, out) {
+        if (in != out) {
+            conv_shortcut_.emplace(source, name + ".conv_shortcut", in, out, 1);
+        }
+    }
+
+    std::size_t out_channels() const { return conv2_.out_channels(); }
+
+    /// The block's output [frames, tokens, out] on the grid of x.
+    template <class Pass>
+    feature_maps<Real> operator()(Pass const& pass, feature_maps<Real> const& x) const {
+        auto result = pass.maps(x.grid(), out_channels());
+        std::vector<Real> time(out_channels());
+        time_emb_proj_(strided_view<Real, 2>(time.data(), {1, time.size()}),
+                       strided_view<Real const, 2>(pass.time.data(), {1, pass.time.size()}));
+        pass.each_frame([&](std::size_t i) { run(result[i], x[i], x.grid(), time); });
+        return result;
+    }
+
+private:
+    void run(strided_view<Real, 2> out, in_view<Real, 2> x, grid_extents grid, std::span<Real const> time) const {
+        stack<Real, 2> normed(x.extents());
+        norm1_(normed.view(), x);
+        silu(std::span(normed.data(), normed.size()));
+        stack<Real, 2> hidden(out.extents());
+        conv1_(hidden.view(), normed, grid);
+        for (std::size_t token = 0; token < hidden.extent(0); ++token) {
+            auto const row = hidden.view()[token].row();
+            for (std::size_t c = 0; c < row.size(); ++c) {
+                row[c] += time[c];
+            }
+        }
+        norm2_(hidden.view(), hidden);
+        silu(std::span(hidden.data(), hidden.size()));
+        conv2_(out, hidden, grid);
+        if (conv_shortcut_) {
+            (*conv_shortcut_)(hidden.view(), x, grid);
+            add_scaled(out, hidden);
+        } else {
+            add_scaled(out, x);
+        }
+    }
+
+    group_norm<Real> norm1_;
+    conv2d<Real> conv1_;
+    linear<Real> time_emb_proj_;
+    group_norm<Real> norm2_;
+    conv2d<Real> conv2_;
+    std::optional<conv2d<Real>> conv_shortcut_;
+};
+
+} // namespace genrender

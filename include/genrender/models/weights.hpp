@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// The parameters of one network by name: from a safetensors file, or drawn from a seed as they are asked for.
+#pragma once
+
+#include <genrender/core/error.hpp>
+#include <genrender/models/safetensors.hpp>
+#include <genrender/models/seeded_tensor.hpp>
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// A store of named tensors from which layers take theirs while they are built. It remembers what was taken, so that a
+/// tensor that nobody wanted is found too.
+template <std::floating_point Real>
+class weights {
+public:
+    /// The tensors of a safetensors file; converted as they are taken. Throws file_error as safetensors_file does.
+    static weights from_file(std::string const& path) {
+        weights result;
+        result.file_.emplace(path);
+        return result;
+    }
+
+    /// Random tensors, made as they are taken (see seeded_tensor), equal for equal seeds whatever is taken and in what order.
+    /// `network` sets networks with the same names for their tensors apart.
+    static weights seeded(std::uint64_t seed, std::string network) {
+        weights result;
+        result.seed_ = seed;
+        result.network_ = std::move(network);
+        return result;
+    }
+
+    /// The elements of tensor `name`, row-major. Throws file_error `path: there is no tensor ...` or `path: tensor ... is [..],
+    /// expected [..]`.
+    std::vector<Real> take(std::string const& name, std::vector<std::size_t> const& shape) {
+        taken_.insert_or_assign(name, shape);
+        if (file_) {
+            auto const found = file_->entries().find(name);
+            if (found == file_->entries().end()) {
+                throw file_error(file_->path() + ": there is no tensor " + name + ", expected one of shape " +
+                                 extents_text(shape));
+            }
+            if (found->second.shape != shape) {
+                throw file_error(file_->path() + ": tensor " + name + " is " + extents_text(found->second.shape) +
+                                 ", expected " + extents_text(shape));
+            }
+            return file_->read<Real>(name);
+        }
+        auto const values = seeded_tensor(seed_, network_, name, shape);
+        return {values.begin(), values.end()};
+    }
+
+    /// Throws file_error naming the tensors of the file that nobody took.
+    void require_all_taken() const {
+        if (!file_) {
+            return;
+        }
+        std::string surplus;
+        std::size_t count = 0;
+        for (auto const& [name, entry] : file_->entries()) {
+            if (!taken_.contains(name) && ++count <= 5) {
+                surplus += (count > 1 ? ", " : "") + name;
+            }
+        }
+        if (count > 0) {
+            throw file_error(file_->path() + ": " + std::to_string(count) + " tensors have no place in the network: " + surplus +
+                             (count > 5 ? ", ..." : "") + ", expected none");
+        }
+    }
+
+    /// Shapes of all tensors taken so far, by name.
+    std::map<std::string, std::vector<std::size_t>> const& taken() const { return taken_; }
+
+    /// Number of scalars in all tensors taken so far.
+    std::size_t parameter_count() const {
+        std::size_t count = 0;
+        for (auto const& [name, shape] : taken_) {
+            count += static_cast<std::size_t>(detail::checked_product(shape).value_or(0));
+        }
+        return count;
+    }
+
+    /// Writes all tensors taken so far into a safetensors file, from which from_file gives equal ones. Seeded tensors
+    /// are floats, whatever Real is, so that nothing is lost. Throws file_error if the file cannot be written.
+    void save(std::string const& path, safetensors_storage storage = safetensors_storage::f32) const {
+        std::map<std::string, std::vector<float>> values;
+        std::map<std::string, safetensors_source> sources;
+        for (auto const& [name, shape] : taken_) {
+            auto const& kept = values[name] =
+                file_ ? file_->template read<float>(name) : seeded_tensor(seed_, network_, name, shape);
+            sources[name] = {shape, kept};
+        }
+        write_safetensors(path, sources, storage);
+    }
+
+private:
+    weights() = default;
+
+    std::optional<safetensors_file> file_;
+    std::uint64_t seed_ = 0;
+    std::string network_;
+    std::map<std::string, std::vector<std::size_t>> taken_;
+};
+
+} // namespace genrender

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3.3] z_UV ~ N(0, I): Gaussian noise that lives on the objects' textures, computed where it is looked at.
+#pragma once
+
+#include <genrender/core/index.hpp>
+#include <genrender/core/random.hpp>
+
+#include <cstdint>
+
+namespace genrender {
+
+/// Noise of every texel of every object's texture, for any number of channels. Nothing is stored: a value is a function of
+/// its address, so any frame can be made in any order.
+struct noise_texture {
+    std::uint64_t seed = 0;
+
+    /// The value of N(0, 1) at a texel and channel.
+    double operator()(texel const& t, std::uint32_t channel) const {
+        // Rows and columns of a texture stay below 2^20 and objects below 2^12 in every address, so nothing meets.
+        return normal_value(seed, random_stream::texture_noise,
+                            {t.row | t.object.value << 20, t.column | (t.object.value >> 12) << 20, channel});
+    }
+};
+
+} // namespace genrender

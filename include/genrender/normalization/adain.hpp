@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3.4] Latent normalisation: AdaIN that gives every frame's background the statistics of the first frame's.
+#pragma once
+
+#include <genrender/normalization/channel_statistics.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace genrender {
+
+/// Rescales z [channels, height, width] in place, all of its pixels, so that statistics `from` become statistics `to`:
+/// z_c = (z_c - mean_from) / deviation_from * deviation_to + mean_to. Throws shape_error if channels differ.
+template <class Real>
+void adain(strided_view<Real, 3> z, channel_statistics<std::type_identity_t<Real>> const& from,
+           channel_statistics<std::type_identity_t<Real>> const& to) {
+    require_extents("adain", "from", std::array{from.mean.size()}, std::array{z.extent(0)});
+    require_extents("adain", "to", std::array{to.mean.size()}, std::array{z.extent(0)});
+    for (std::size_t c = 0; c < z.extent(0); ++c) {
+        auto const scale = to.deviation[c] / from.deviation[c];
+        auto const shift = to.mean[c] - from.mean[c] * scale;
+        for (std::size_t row = 0; row < z.extent(1); ++row) {
+            for (std::size_t column = 0; column < z.extent(2); ++column) {
+                z(c, row, column) = z(c, row, column) * scale + shift;
+            }
+        }
+    }
+}
+
+/// What latent normalisation does to a frame with hardly any background.
+enum class without_background : std::uint8_t {
+    skip,      ///< leave the frame as it is and report it
+    all_pixels ///< take the statistics of all of its pixels, and of all pixels of the first frame
+};
+
+/// How latents are normalised.
+template <class Real>
+struct adain_settings {
+    bool enabled = true;
+    Real window_begin = 0; ///< first and
+    Real window_end = 1;   ///< last share of the steps in which it runs, [begin, end)
+    std::size_t least_pixels = 2; ///< background pixels below which `fallback` decides; at least 2
+    without_background fallback = without_background::skip;
+    bool on_noisy_latents = false; ///< normalise z_{t-1} after the sampler's step instead of the clean estimates
+};
+
+/// Normalises a sequence z [frames, channels, height, width] in place: each frame's statistics over its own `background`
+/// [frames, height, width] become those of frame 0 over its own. Returns the frames that were skipped for want of background
+/// (all of them if frame 0 has none). Throws shape_error if the mask does not fit.
+template <class Real>
+std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view<std::uint8_t const, 3> background,
+                                           adain_settings<std::type_identity_t<Real>> const& settings = {}) {
+    require_shape("normalize_latents", "background", background, {z.extent(0), z.extent(2), z.extent(3)});
+    auto const least = std::max<std::size_t>(settings.least_pixels, 2);
+    std::vector<std::uint8_t> const everywhere(z.extent(2) * z.extent(3), 1);
+    strided_view<std::uint8_t const, 2> const all(everywhere.data(), {z.extent(2), z.extent(3)});
+    auto const statistics = [&](std::size_t i, auto const& mask) {
+        return masked_statistics(strided_view<Real const, 3>(z[i]), mask);
+    };
+
+    std::vector<std::size_t> skipped;
+    if (z.extent(0) == 0) {
+        return skipped;
+    }
+    // Frame 0 stays as it is, so its statistics can be taken before the others change.
+    auto const first = statistics(0, background[0]);
+    auto const first_everywhere = statistics(0, all);
+    for (std::size_t i = 0; i < z.extent(0); ++i) {
+        auto const own = statistics(i, background[i]);
+        if (own.pixels >= least && first.pixels >= least) {
+            if (i > 0) {
+                adain(z[i], own, first);
+            }
+        } else if (settings.fallback == without_background::all_pixels) {
+            if (i > 0) {
+                adain(z[i], statistics(i, all), first_everywhere);
+            }
+        } else {
+            skipped.push_back(i);
+        }
+    }
+    return skipped;
+}
+
+} // namespace genrender

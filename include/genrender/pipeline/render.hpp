@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1] Generative Rendering: from the UV maps of an animated scene to consistent latents, with the user's denoiser.
+#pragma once
+
+#include <genrender/guidance/background_mask.hpp>
+#include <genrender/pipeline/sequence_denoiser.hpp>
+#include <genrender/sampling/karras_schedule.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// Throws value_error for settings that no run could honour.
+template <class Real>
+void require_render_settings(render_settings<Real> const& settings, std::size_t frames) {
+    require_value(frames > 0, "render", "UV.frame_count()", frames, "at least one frame");
+    require_value(settings.steps > 0, "render", "settings.steps", settings.steps, "at least one step");
+    require_value(settings.frames_per_call > 0, "render", "settings.frames_per_call", settings.frames_per_call,
+                  "at least one frame");
+    require_value(settings.window_begin >= 0 && settings.window_end <= 1 && settings.window_begin <= settings.window_end,
+                  "render", "settings.window_begin", settings.window_begin, "0 <= window_begin <= window_end <= 1");
+    if (settings.window_begin < settings.window_end) {
+        draw_keyframes(settings.keyframes, frames, 0);
+    }
+}
+
+/// Renders an animation with a denoiser: z_0 [frames, channels, height, width], the clean latents of all frames, for the
+/// user's decoder. UV maps [frames, height, width] are of full resolution, a whole multiple of the denoiser's latent grid and
+/// feature grids; the denoiser owns prompt and depth. `make_map(grid)` compiles the correspondence map of a feature
+/// resolution. The same seeds give the same frames with every `loop`, bit for bit. Throws value_error or shape_error for
+/// arguments that do not fit, before anything is run; cancelled if the observer ends the run; what the denoiser throws.
+template <denoiser Phi, class MakeMap, parallel_loop Loop = sequential_loop>
+latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, MakeMap const& make_map,
+                                        render_settings<typename Phi::real_type> const& settings, render_report& report,
+                                        progress_observer observer = {}, Loop const& loop = {}) {
+    using Real = typename Phi::real_type;
+    using map_type = decltype(make_map(grid_extents{}));
+    require_render_settings(settings, UV.frame_count());
+    auto const sigmas = karras_schedule<Real>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
+    auto const N = UV.frame_count();
+    auto const grid = grid_extents(phi.latent_grid());
+
+    // z_UV ~ N(0, I); z = z_T = sigma_T pi_UV(z_UV)
+    auto z = latents<Real>::from_shape({N, phi.latent_channels(), grid.height, grid.width});
+    std::vector<frame_index> frames;
+    for (std::uint32_t i = 0; i < N; ++i) {
+        frames.push_back({i});
+    }
+    initial_noise(to_view(z), UV, frames, settings.noise, loop);
+    z *= sigmas.front();
+
+    // Compile what geometry decides, once for the animation.
+    auto const background = background_mask(UV, grid);
+    correspondence_set<map_type> maps;
+    for (auto const& site : phi.sites()) {
+        for (std::uint32_t branch = 0; branch < phi.branches(); ++branch) {
+            if (settings.post_attention && settings.layers(site, branch)) {
+                maps.add(site.grid, make_map);
+            }
+        }
+    }
+
+    // for t = T, ..., 1: keyframes, features, blending, injection, normalisation: see sequence_denoiser
+    auto const keyframes = settings.keyframes.drawing == keyframe_drawing::fixed ? settings.keyframes.frames.size()
+                                                                                 : settings.keyframes.count;
+    progress_meter meter(settings.steps, evaluations(settings.method, settings.steps) * (N + keyframes), std::move(observer));
+    sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter, report);
+    return sample(settings.method, D, std::move(z), sigmas, [&](std::size_t step, latents<Real>& z_next) {
+        if (settings.normalization.enabled && settings.normalization.on_noisy_latents) {
+            D.normalize(z_next, step);
+        }
+    });
+}
+
+/// The same with the paper's texel grid as the correspondence, set up by `settings.correspondence`.
+template <denoiser Phi, parallel_loop Loop = sequential_loop>
+latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV,
+                                        render_settings<typename Phi::real_type> const& settings, render_report& report,
+                                        progress_observer observer = {}, Loop const& loop = {}) {
+    auto const make_map = [&](grid_extents grid) { return texel_grid(UV, grid, settings.correspondence, loop); };
+    return render(phi, UV, make_map, settings, report, std::move(observer), loop);
+}
+
+} // namespace genrender

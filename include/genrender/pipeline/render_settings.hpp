@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3, 4] Everything about a run that is neither the scene nor the network, with the paper's values as defaults.
+#pragma once
+
+#include <genrender/attention/attention_site.hpp>
+#include <genrender/correspondence/texel_grid.hpp>
+#include <genrender/keyframes/draw_keyframes.hpp>
+#include <genrender/noise/initial_noise.hpp>
+#include <genrender/normalization/adain.hpp>
+#include <genrender/sampling/sampler.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace genrender {
+
+/// Which self-attention modules take part: all of the denoising network's decoder, in every guidance branch. The encoder and
+/// a ControlNet stay as they are.
+inline bool is_in_decoder(attention_site const& site, std::uint32_t /*branch*/) {
+    return site.network == network_kind::denoiser && site.part == network_part::decoder;
+}
+
+/// Settings of one run of Alg. 1.
+template <class Real>
+struct render_settings {
+    std::size_t steps = 50;           ///< T, denoising steps
+    Real sigma_min = Real(0.0292);    ///< lowest noise level before 0 (Stable Diffusion's)
+    Real sigma_max = Real(14.6146);   ///< noise level of the initial latents
+    Real rho = 7;                     ///< spacing of the levels [EDM eq. 5]
+    sampler method = sampler::euler;
+
+    noise_settings noise;               ///< sec. 3.3
+    keyframe_settings keyframes;        ///< alg. 1: KF
+    texel_grid_settings correspondence; ///< sec. 3.2
+    adain_settings<Real> normalization; ///< sec. 3.4
+
+    /// Sites and branches that take part in the injection.
+    std::function<bool(attention_site const&, std::uint32_t branch)> layers = is_in_decoder;
+    /// alpha of eq. 6, by step and site.
+    std::function<Real(std::size_t step, attention_site const&)> alpha = [](std::size_t, attention_site const&) {
+        return Real(0.7);
+    };
+    bool pre_attention = true;            ///< eq. 3 and 5; without it no frame attends to another
+    bool post_attention = true;           ///< eq. 6
+    bool keeps_own_copy = true;           ///< eq. 5 as written: a keyframe meets its own tokens twice
+    Real first_fill_share = Real(0.5);    ///< of the inpainted texture in the unified one
+    Real window_begin = 0;                ///< first and
+    Real window_end = 1;                  ///< last share of the steps with keyframes and injection, [begin, end)
+
+    std::size_t frames_per_call = 1;      ///< frames that the injected pass gives the denoiser at once
+};
+
+} // namespace genrender

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// [DPM++ alg. 2] DPM-Solver++(2M) (Lu et al. 2022): one evaluation a step, second order by remembering the last one.
+#pragma once
+
+#include <genrender/sampling/euler.hpp>
+#include <genrender/sampling/sampler_arguments.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+namespace genrender {
+
+/// The latents at the last of the noise levels, from z at the first, following D by DPM-Solver++(2M). D is evaluated
+/// once a step. The first step and a step to level 0 are of first order: the one has no past, the other is infinitely
+/// long in log sigma.
+///
+/// What `Latents` and `after_step` are, what is kept and what is thrown: see euler.
+template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
+    requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
+Latents dpmpp_2m(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+    using Real = level_type<Sigmas>;
+    require_noise_levels("dpmpp_2m", sigmas);
+    // The last clean estimate lives here and dies with the call.
+    std::optional<Latents> x0_last;
+    for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
+        Real const sigma = sigmas[i];
+        Real const sigma_next = sigmas[i + 1];
+        Latents x0 = D(std::as_const(z), sigma);
+        // The step of alg. 2, (sigma_next / sigma) z - (exp(-h) - 1) x0 with h = log(sigma / sigma_next), is
+        // Euler's: what makes it second order is that the clean estimate is extrapolated in log sigma to the
+        // middle of the step.
+        if (x0_last && sigma_next > 0) {
+            auto const h_last = std::log(sigmas[i - 1] / sigma);
+            auto const h = std::log(sigma / sigma_next);
+            Latents const x0_middle = x0 + (h / (2 * h_last)) * (x0 - *x0_last);
+            z = euler_step(z, x0_middle, sigma, sigma_next);
+        } else {
+            z = euler_step(z, x0, sigma, sigma_next);
+        }
+        x0_last = std::move(x0);
+        after_step(i, z);
+    }
+    return z;
+}
+
+} // namespace genrender

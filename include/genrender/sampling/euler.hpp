@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// [EDM alg. 1] Euler's method: one evaluation a step, first order. Without its lines 6 to 8, which make it Heun's.
+#pragma once
+
+#include <genrender/sampling/sampler_arguments.hpp>
+
+#include <concepts>
+#include <cstddef>
+#include <utility>
+
+namespace genrender {
+
+/// Latents one step further: z + (sigma_next - sigma) d along d = (z - x0) / sigma [EDM alg. 1, lines 4 and 5],
+/// gathered to (sigma_next / sigma) z + (1 - sigma_next / sigma) x0, so that sigma_next = 0 gives x0 to the bit.
+/// Expects sigma > 0.
+template <class Latents, std::floating_point Real>
+Latents euler_step(Latents const& z, Latents const& x0, Real sigma, Real sigma_next) {
+    auto const kept = sigma_next / sigma;
+    return kept * z + (1 - kept) * x0;
+}
+
+/// The latents at the last of the noise levels, from z at the first, following D by Euler's method; the deterministic
+/// sampler of DDIM. D is evaluated once a step, steps being one fewer than levels.
+///
+/// `Latents` is any value type with Latents + Latents, Latents - Latents and Real * Latents: a scalar, xt::xtensor,
+/// Eigen::Array. `after_step(step, z)` is called after each step, counted from 0, and may change z: what it leaves
+/// there is what the next step starts from. Keeps nothing between calls. Throws as require_noise_levels does, and
+/// what D and after_step throw.
+template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
+    requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
+Latents euler(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+    require_noise_levels("euler", sigmas);
+    for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
+        Latents const x0 = D(std::as_const(z), sigmas[i]);
+        z = euler_step(z, x0, sigmas[i], sigmas[i + 1]);
+        after_step(i, z);
+    }
+    return z;
+}
+
+} // namespace genrender

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// [EDM alg. 1] Heun's method: two evaluations a step, second order.
+#pragma once
+
+#include <genrender/sampling/euler.hpp>
+#include <genrender/sampling/sampler_arguments.hpp>
+
+#include <cstddef>
+#include <utility>
+
+namespace genrender {
+
+/// The latents at the last of the noise levels, from z at the first, following D by Heun's method: an Euler step,
+/// then the same step again along the mean of the slopes at both of its ends. D is evaluated twice a step, the second
+/// time at the step's lower level; but once in a step to level 0, where the slope (z - x0) / sigma has no value.
+///
+/// What `Latents` and `after_step` are, what is kept and what is thrown: see euler.
+template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
+    requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
+Latents heun(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+    using Real = level_type<Sigmas>;
+    require_noise_levels("heun", sigmas);
+    for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
+        Real const sigma = sigmas[i];
+        Real const sigma_next = sigmas[i + 1];
+        Latents const x0 = D(std::as_const(z), sigma);
+        Latents const z_euler = euler_step(z, x0, sigma, sigma_next);
+        if (sigma_next > 0) {
+            Latents const x0_next = D(z_euler, sigma_next);
+            Latents const d = (1 / sigma) * (z - x0);
+            Latents const d_next = (1 / sigma_next) * (z_euler - x0_next);
+            z = z + ((sigma_next - sigma) / 2) * (d + d_next);
+        } else {
+            z = z_euler;
+        }
+        after_step(i, z);
+    }
+    return z;
+}
+
+} // namespace genrender

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// [EDM alg. 1] The samplers by name, and what each costs.
+#pragma once
+
+#include <genrender/core/error.hpp>
+#include <genrender/sampling/dpmpp_2m.hpp>
+#include <genrender/sampling/euler.hpp>
+#include <genrender/sampling/heun.hpp>
+#include <genrender/sampling/sampler_arguments.hpp>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace genrender {
+
+/// A deterministic sampler.
+enum class sampler {
+    euler,   ///< first order, one evaluation a step
+    heun,    ///< second order, two evaluations a step
+    dpmpp_2m ///< second order, one evaluation a step and the memory of another
+};
+
+/// The latents at the last of the noise levels, from z at the first, by the sampler of that name; see euler, heun and
+/// dpmpp_2m. Throws as they do, and value_error for a value that names none.
+template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
+    requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
+Latents sample(sampler method, Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+    switch (method) {
+    case sampler::euler:
+        return euler(D, std::move(z), sigmas, after_step);
+    case sampler::heun:
+        return heun(D, std::move(z), sigmas, after_step);
+    case sampler::dpmpp_2m:
+        return dpmpp_2m(D, std::move(z), sigmas, after_step);
+    }
+    throw value_error("sample: method is " + std::to_string(static_cast<int>(method)) +
+                      ", expected euler, heun or dpmpp_2m");
+}
+
+/// How often a run of `steps` steps that ends at level 0, such as karras_schedule(steps), evaluates D. Throws
+/// value_error for 0 steps or a value that names no sampler.
+inline std::size_t evaluations(sampler method, std::size_t steps) {
+    require_value(steps >= 1, "evaluations", "steps", steps, "at least 1");
+    switch (method) {
+    case sampler::euler:
+    case sampler::dpmpp_2m:
+        return steps;
+    case sampler::heun:
+        return 2 * steps - 1;
+    }
+    throw value_error("evaluations: method is " + std::to_string(static_cast<int>(method)) +
+                      ", expected euler, heun or dpmpp_2m");
+}
+
+} // namespace genrender

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// [EDM alg. 1] What every sampler takes: a clean estimate to follow, the noise levels to visit, a word after each step.
+#pragma once
+
+#include <genrender/core/error.hpp>
+
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace genrender {
+
+/// The noise levels of a run: any sequence of float or double with a size and an index, such as std::vector<Real> and
+/// std::span<Real const>.
+///
+/// These the compiler cannot check, and require_noise_levels does: at least 2 levels, finite, strictly falling, none
+/// below 0. So only the last can be 0. Levels have the scalar type of the latents they are multiplied with.
+template <class Sigmas>
+concept noise_levels = requires(Sigmas const& sigmas, std::size_t i) {
+    { std::size(sigmas) } -> std::convertible_to<std::size_t>;
+    requires std::floating_point<std::remove_cvref_t<decltype(sigmas[i])>>;
+};
+
+/// The scalar type of noise levels.
+template <noise_levels Sigmas>
+using level_type = std::remove_cvref_t<decltype(std::declval<Sigmas const&>()[std::size_t{}])>;
+
+/// What a sampler follows: `D(z, sigma)` is the clean estimate of latents z = x0 + sigma n. z is a whole animation;
+/// nothing here knows of frames.
+template <class Denoise, class Latents, class Real>
+concept clean_estimator = requires(Denoise& D, Latents const& z, Real sigma) {
+    { D(z, sigma) } -> std::convertible_to<Latents>;
+};
+
+/// The default after_step of the samplers: does nothing.
+struct nothing_after_step {
+    template <class Latents>
+    void operator()(std::size_t, Latents&) const {}
+};
+
+/// Throws shape_error for fewer than 2 levels; value_error unless they are finite, at least 0 and strictly falling.
+template <noise_levels Sigmas>
+void require_noise_levels(char const* function, Sigmas const& sigmas) {
+    auto const count = std::size(sigmas);
+    if (count < 2) {
+        throw shape_error(std::string(function) + ": sigmas is " + extents_text({count}) + ", expected at least [2]");
+    }
+    auto const name = [](std::size_t i) { return "sigmas[" + std::to_string(i) + "]"; };
+    for (std::size_t i = 0; i < count; ++i) {
+        require_value(std::isfinite(sigmas[i]) && sigmas[i] >= 0, function, name(i).c_str(), sigmas[i],
+                      "a finite number of at least 0");
+        require_value(i == 0 || sigmas[i] < sigmas[i - 1], function, name(i).c_str(), sigmas[i],
+                      ("less than " + name(i - 1)).c_str());
+    }
+}
+
+} // namespace genrender

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3.2, alg. 1] The blend plan by hand and against the dense texture.
+#include <genrender/blending/blend_plan.hpp>
+
+#include "../support/dense_texture.hpp"
+#include "../support/random_scene.hpp"
+#include "../support/random_stack.hpp"
+#include "../support/shifted_strip.hpp"
+
+#include <genrender/blending/mix_rows.hpp>
+#include <genrender/correspondence/texel_grid.hpp>
+#include <genrender/keyframes/draw_keyframes.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <vector>
+
+using namespace genrender;
+
+namespace {
+
+/// F_bar of a frame by the library's plan; tokens that nothing covers keep 1000.
+template <class Real, class Map>
+stack<Real, 2> planned(Map const& map, std::vector<frame_index> const& KF, frame_index i, stack<Real, 3> const& F_KF,
+                       Real share = Real(0.5)) {
+    auto const plan = make_blend_plan<Real>(map, KF, i, share);
+    stack<Real, 2> F({F_KF.extent(1), F_KF.extent(2)});
+    for (std::size_t e = 0; e < F.size(); ++e) {
+        F.data()[e] = 1000;
+    }
+    mix_rows(F.view(), F_KF, plan.rows(), 1);
+    return F;
+}
+
+/// Three of six frames in an order that is not sorted.
+std::vector<frame_index> draw_shuffled(std::uint64_t seed) {
+    return draw_keyframes({.count = 3, .drawing = keyframe_drawing::uniform, .frames = {}, .seed = seed}, 6, 0);
+}
+
+} // namespace
+
+TEST_SUITE("blending/blend_plan") {
+    TEST_CASE_TEMPLATE("[GR sec. 3.2] a point seen twice is the mean of its first value and its average", Real, float, double) {
+        // Frame i shows points i, i + 1, i + 2. Keyframes in the drawn order: 2, then 0.
+        testing::shifted_strip const strip{4, 3};
+        stack<Real, 3> F_KF({2, 3, 1});
+        F_KF(0, 0, 0) = 2; // point 2, first
+        F_KF(0, 1, 0) = 3; // point 3
+        F_KF(0, 2, 0) = 4; // point 4
+        F_KF(1, 0, 0) = 10; // point 0
+        F_KF(1, 1, 0) = 11; // point 1
+        F_KF(1, 2, 0) = 12; // point 2, second
+        auto const F_bar = planned<Real>(strip, {{2}, {0}}, {1}, F_KF);
+        CHECK(F_bar(0, 0) == 11);                                  // point 1: seen once, itself
+        CHECK(F_bar(1, 0) == doctest::Approx((2 + (2 + 12) / 2.0) / 2)); // point 2: (first + average) / 2
+        CHECK(F_bar(2, 0) == 3);                                   // point 3: seen once, itself
+        auto const F_bar_3 = planned<Real>(strip, {{2}, {0}}, {3}, F_KF);
+        CHECK(F_bar_3(2, 0) == 1000); // point 5: seen by no keyframe, not touched
+        // The order of the keyframes decides who fills first.
+        stack<Real, 3> swapped({2, 3, 1});
+        copy(swapped.view()[0], in_view<Real, 2>(F_KF.view()[1]));
+        copy(swapped.view()[1], in_view<Real, 2>(F_KF.view()[0]));
+        CHECK(planned<Real>(strip, {{0}, {2}}, {1}, swapped)(1, 0) == doctest::Approx((12 + (2 + 12) / 2.0) / 2));
+    }
+    TEST_CASE("[GR sec. 3.2] being filled is geometry and not a value: features around zero fill first all the same") {
+        testing::shifted_strip const strip{2, 2};
+        stack<double, 3> F_KF({2, 2, 2});
+        // The first keyframe's feature of point 1 sums to less than zero, the peer's sign of an empty texel.
+        F_KF(0, 1, 0) = -3;
+        F_KF(0, 1, 1) = 1;
+        F_KF(1, 0, 0) = 5;
+        F_KF(1, 0, 1) = 7;
+        auto const first_fill = planned<double>(strip, {{0}, {1}}, {0}, F_KF, 1);
+        CHECK(first_fill(1, 0) == -3);
+        CHECK(first_fill(1, 1) == 1);
+    }
+    TEST_CASE("[GR sec. 3.2] the average divides by the keyframes that see the point and keeps the magnitude") {
+        testing::shifted_strip const strip{5, 3};
+        stack<double, 3> F_KF({3, 3, 1});
+        for (std::size_t e = 0; e < F_KF.size(); ++e) {
+            F_KF.data()[e] = 8;
+        }
+        auto const average = planned<double>(strip, {{0}, {1}, {4}}, {1}, F_KF, 0);
+        CHECK(average(0, 0) == doctest::Approx(8));
+        CHECK(average(1, 0) == doctest::Approx(8));
+    }
+    TEST_CASE_TEMPLATE("[GR alg. 1] the plan equals the dense texture on random scenes", Real, float, double) {
+        double worst = 0;
+        std::size_t compared = 0;
+        std::size_t uncovered = 0;
+        std::size_t collisions = 0;
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            std::size_t const objects = 1 + seed % 4;
+            std::size_t const T = std::array<std::size_t, 4>{6, 16, 40, 200}[seed % 4]; // collisions at 6, uncovered texels at 200
+            grid_extents const grid{12, 16};
+            auto const maps = testing::random_scene(seed, 6, {48, 64}, objects);
+            texel_grid const map(to_uv_view(maps), grid, {.T = T});
+            auto const KF = draw_shuffled(seed);
+            auto const F_KF = testing::random_stack<Real, 3>({KF.size(), grid.size(), 5}, seed);
+            auto const share = seed % 3 == 0 ? Real(0.25) : Real(0.5);
+
+            std::vector<testing::dense_texture<Real>> unprojected;
+            for (std::size_t k = 0; k < KF.size(); ++k) {
+                unprojected.push_back(testing::dense_unproject<Real>(maps, KF[k].value, F_KF.view()[k], grid, objects, T));
+            }
+            auto const texture = testing::dense_blend(unprojected, share);
+            for (std::uint32_t i = 0; i < 6; ++i) {
+                auto const F_bar = planned<Real>(map, KF, {i}, F_KF, share);
+                std::set<std::size_t> read;
+                for (std::size_t t = 0; t < grid.size(); ++t) {
+                    auto const texel = testing::dense_texel_of(maps, i, grid, t, objects, T);
+                    auto const is_covered = texel && texture.filled[*texel] != 0;
+                    uncovered += texel && !is_covered ? 1U : 0U;
+                    collisions += texel && !read.insert(*texel).second ? 1U : 0U;
+                    for (std::size_t c = 0; c < 5; ++c) {
+                        auto const expected = is_covered ? texture.values[*texel * 5 + c] : Real(1000);
+                        worst = std::max(worst, static_cast<double>(std::abs(F_bar(t, c) - expected)));
+                        compared += is_covered ? 1U : 0U;
+                    }
+                }
+            }
+        }
+        MESSAGE("compared ", compared, " values, ", uncovered, " tokens uncovered, ", collisions,
+                " shared texels, worst difference ", worst);
+        CHECK(worst <= 1e-6);
+        CHECK(compared > 10000);
+        CHECK(uncovered > 100);
+        CHECK(collisions > 100);
+    }
+    TEST_CASE("[GR alg. 1] with the average reading the plan's rows still sum to 1") {
+        auto const maps = testing::random_scene(4, 4, {48, 48}, 3);
+        texel_grid const map(to_uv_view(maps), {8, 8}, {.T = 12, .reading = texel_reading::average});
+        auto const plan = make_blend_plan<double>(map, std::vector<frame_index>{{3}, {1}}, {0});
+        CHECK(plan.covered_count() > 20);
+        for (std::size_t t = 0; t < 64; ++t) {
+            double sum = 0;
+            for (auto e = plan.offsets[t]; e < plan.offsets[t + 1]; ++e) {
+                sum += plan.weights[e];
+            }
+            CHECK(sum == doctest::Approx(plan.rows().is_covered(t) ? 1.0 : 0.0));
+        }
+    }
+    TEST_CASE("arguments that do not fit are refused by name") {
+        testing::shifted_strip const strip{2, 3};
+        std::vector<frame_index> const KF{{0}};
+        CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, KF, {5}), "make_blend_plan: i is 5, expected a frame below 2",
+                             value_error);
+        CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, {}, {0}),
+                             "make_blend_plan: keyframes is empty, expected at least one keyframe", value_error);
+        CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, std::vector<frame_index>{{2}}, {0}),
+                             "make_blend_plan: keyframes is 2, expected a frame below 2", value_error);
+        CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, KF, {0}, 1.5),
+                             "make_blend_plan: first_fill_share is 1.500000, expected a share in [0, 1]", value_error);
+    }
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3.2] The kernel of blending on every layout.
+#include <genrender/blending/mix_rows.hpp>
+
+#include "../support/random_stack.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <vector>
+
+using namespace genrender;
+
+TEST_SUITE("blending/mix_rows") {
+    TEST_CASE_TEMPLATE("a row by hand", Real, float, double) {
+        stack<Real, 3> F_KF({2, 2, 1});
+        F_KF(0, 1, 0) = 4;
+        F_KF(1, 0, 0) = 8;
+        std::vector<std::uint32_t> const offsets{0, 2, 2};
+        std::vector<std::uint32_t> const sources{1, 2};
+        std::vector<Real> const weights{Real(0.75), Real(0.25)};
+        stack<Real, 2> F({2, 1});
+        F(0, 0) = 1;
+        F(1, 0) = 9;
+        mix_rows(F.view(), F_KF, sparse_rows<Real>{offsets, sources, weights}, Real(0.5));
+        CHECK(F(0, 0) == doctest::Approx(0.5 * 1 + 0.5 * (0.75 * 4 + 0.25 * 8)));
+        CHECK(F(1, 0) == 9);
+    }
+    TEST_CASE_TEMPLATE("strided and contiguous features give the same", Real, float, double) {
+        std::size_t const tokens = 7;
+        std::size_t const channels = 5;
+        auto const F_KF = testing::random_stack<Real, 3>({3, tokens, channels}, 1);
+        stack<Real, 3> channel_major({3, channels, tokens});
+        strided_view<Real, 3> const F_KF_strided(
+            channel_major.data(), {3, tokens, channels},
+            {static_cast<std::ptrdiff_t>(tokens * channels), 1, static_cast<std::ptrdiff_t>(tokens)});
+        copy(F_KF_strided, in_view<Real, 3>(F_KF));
+        std::vector<std::uint32_t> const offsets{0, 1, 1, 3, 6, 7, 7, 9};
+        std::vector<std::uint32_t> const sources{20, 3, 9, 0, 7, 14, 6, 13, 1};
+        std::vector<Real> const weights{1, Real(0.5), Real(0.5), Real(0.2), Real(0.3), Real(0.5), 1, Real(0.1), Real(0.9)};
+        sparse_rows<Real> const rows{offsets, sources, weights};
+        for (auto const alpha : {Real(0.7), Real(1), Real(0)}) {
+            auto plain = testing::random_stack<Real, 2>({tokens, channels}, 2);
+            auto const before = plain;
+            stack<Real, 2> transposed({channels, tokens});
+            strided_view<Real, 2> const strided(transposed.data(), {tokens, channels}, {1, static_cast<std::ptrdiff_t>(tokens)});
+            copy(strided, in_view<Real, 2>(plain));
+            mix_rows(plain.view(), F_KF, rows, alpha);
+            mix_rows(strided, F_KF_strided, rows, alpha);
+            for (std::size_t t = 0; t < tokens; ++t) {
+                for (std::size_t c = 0; c < channels; ++c) {
+                    Real F_bar = 0;
+                    for (auto e = offsets[t]; e < offsets[t + 1]; ++e) {
+                        F_bar += weights[e] * F_KF(sources[e] / tokens, sources[e] % tokens, c);
+                    }
+                    auto const expected = rows.is_covered(t) ? (1 - alpha) * before(t, c) + alpha * F_bar : before(t, c);
+                    CHECK(plain(t, c) == doctest::Approx(expected).epsilon(1e-5));
+                    CHECK(strided(t, c) == plain(t, c));
+                }
+            }
+        }
+    }
+    TEST_CASE("with alpha 1 the former feature is not read") {
+        stack<float, 3> F_KF({1, 1, 1});
+        F_KF(0, 0, 0) = 2;
+        stack<float, 2> F({1, 1});
+        F(0, 0) = std::numeric_limits<float>::quiet_NaN();
+        std::vector<std::uint32_t> const offsets{0, 1};
+        std::vector<std::uint32_t> const sources{0};
+        std::vector<float> const weights{1};
+        mix_rows(F.view(), F_KF, {offsets, sources, weights}, 1);
+        CHECK(F(0, 0) == 2);
+    }
+    TEST_CASE("features that do not fit are refused by name") {
+        stack<float, 2> F({2, 3});
+        stack<float, 3> F_KF({1, 2, 4});
+        std::vector<std::uint32_t> const offsets{0, 0};
+        CHECK_THROWS_WITH_AS(mix_rows(F.view(), F_KF, {offsets, {}, {}}, 1), "mix_rows: F_KF is [1, 2, 4], expected [1, 2, 3]",
+                             shape_error);
+        stack<float, 3> fits({1, 2, 3});
+        CHECK_THROWS_WITH_AS(mix_rows(F.view(), fits, {offsets, {}, {}}, 1), "mix_rows: rows is [1], expected [2]", shape_error);
+    }
+}

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1] Whole runs.
+#include <genrender/pipeline/render.hpp>
+
+#include "../support/analytic_denoiser.hpp"
+#include "../support/denoiser_laws.hpp"
+#include "../support/random_scene.hpp"
+
+#include <genrender/evaluation/correspondence_error.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace genrender;
+
+static_assert(denoiser<testing::analytic_denoiser<float>>);
+static_assert(denoiser<testing::analytic_denoiser<double>>);
+static_assert(denoiser<denoiser_archetype<float, host_features<float>>>);
+static_assert(!denoiser<texel_grid>);
+
+namespace {
+
+testing::analytic_denoiser<double> with_attention() { return {.grid = {8, 8}, .attention = 0.5}; }
+
+uv_maps const& scene() {
+    static auto const maps = testing::random_scene(33, 6, {32, 32}, 3);
+    return maps;
+}
+
+render_settings<double> few_steps() {
+    render_settings<double> settings;
+    settings.steps = 4;
+    settings.keyframes.count = 3;
+    return settings;
+}
+
+template <class Phi>
+latents<double> run(Phi const& phi, render_settings<double> const& settings, std::size_t threads = 1) {
+    render_report report;
+    return render(phi, to_uv_view(scene()), settings, report, {}, threaded_loop(threads));
+}
+
+double difference(latents<double> const& a, latents<double> const& b) {
+    double worst = 0;
+    for (std::size_t e = 0; e < a.size(); ++e) {
+        worst = std::max(worst, std::abs(a.data()[e] - b.data()[e]));
+    }
+    return worst;
+}
+
+} // namespace
+
+TEST_SUITE("pipeline/render") {
+    TEST_CASE("the analytic denoiser keeps the laws") {
+        auto phi = with_attention();
+        phi.guidance_branches = 2;
+        testing::check_denoiser_laws(phi, 2.0);
+    }
+    TEST_CASE_TEMPLATE("[GR alg. 1] with a denoiser of known answer every sampler reaches it", Real, float, double) {
+        testing::analytic_denoiser<Real> const phi{.grid = {8, 8}}; // no attention: the exact posterior
+        render_settings<Real> settings;
+        settings.normalization.enabled = false;
+        settings.keyframes.count = 2;
+        settings.steps = 60;
+        auto z_T = latents<Real>::from_shape({6, 3, 8, 8});
+        std::vector<frame_index> const frames{{0}, {1}, {2}, {3}, {4}, {5}};
+        initial_noise(to_view(z_T), to_uv_view(scene()), frames, settings.noise);
+        z_T *= settings.sigma_max;
+        auto const shrink = phi.spread / std::sqrt(phi.spread * phi.spread + settings.sigma_max * settings.sigma_max);
+        for (auto const& [method, bound] : {std::pair(sampler::euler, 0.05), std::pair(sampler::heun, 0.005),
+                                            std::pair(sampler::dpmpp_2m, 0.005)}) {
+            settings.method = method;
+            render_report report;
+            auto const z = render(phi, to_uv_view(scene()), settings, report);
+            double worst = 0;
+            for (std::size_t e = 0; e < z.size(); ++e) {
+                auto const exact = phi.mean + (z_T.data()[e] - phi.mean) * shrink;
+                worst = std::max(worst, std::abs(static_cast<double>(z.data()[e] - exact)));
+            }
+            CHECK(worst < bound);
+        }
+    }
+    TEST_CASE("the same seed gives the same frames on one and two threads and for any number of frames a call") {
+        auto const phi = with_attention();
+        auto settings = few_steps();
+        auto const one = run(phi, settings, 1);
+        CHECK(difference(one, run(phi, settings, 2)) == 0);
+        settings.frames_per_call = 4;
+        CHECK(difference(one, run(phi, settings, 2)) == 0);
+        settings.keyframes.seed = 1;
+        CHECK(difference(one, run(phi, settings)) > 0);
+        settings.keyframes.seed = 0;
+        settings.noise.seed = 1;
+        CHECK(difference(one, run(phi, settings)) > 1e-3);
+    }
+    TEST_CASE("each switch changes what it should and nothing else") {
+        auto const phi = with_attention();
+        auto settings = few_steps();
+        auto const full = run(phi, settings);
+        auto const changed = [&](auto&& change) {
+            auto other = few_steps();
+            change(other);
+            return run(phi, other);
+        };
+        auto const no_post = changed([](auto& s) { s.post_attention = false; });
+        CHECK(difference(full, no_post) > 1e-4);
+        CHECK(difference(no_post, changed([](auto& s) { s.alpha = [](std::size_t, attention_site const&) { return 0.0; }; })) ==
+              0);
+        auto const no_pre = changed([](auto& s) { s.pre_attention = false; });
+        CHECK(difference(full, no_pre) > 1e-4);
+        auto const neither = changed([](auto& s) { s.pre_attention = s.post_attention = false; });
+        CHECK(difference(neither, changed([](auto& s) { s.window_end = 0; })) == 0);
+        CHECK(difference(full, changed([](auto& s) { s.window_end = 0.5; })) > 1e-6);
+        CHECK(difference(full, changed([](auto& s) { s.normalization.enabled = false; })) > 1e-6);
+        CHECK(difference(full, changed([](auto& s) { s.normalization.window_begin = s.normalization.window_end; })) ==
+              doctest::Approx(difference(full, changed([](auto& s) { s.normalization.enabled = false; }))));
+        CHECK(difference(full, changed([](auto& s) { s.normalization.on_noisy_latents = true; })) > 1e-6);
+        CHECK(difference(full, changed([](auto& s) { s.keeps_own_copy = false; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.first_fill_share = 1; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.correspondence.T = 2; })) > 1e-6);
+        CHECK(difference(full, changed([](auto& s) { s.noise.T = 2; })) > 1e-3);
+        CHECK(difference(full, changed([](auto& s) { s.keyframes.drawing = keyframe_drawing::stratified; })) > 1e-9);
+    }
+    TEST_CASE("UV noise alone makes corresponding pixels of the analytic denoiser agree better than independent noise") {
+        auto const maps = testing::random_scene(40, 12, {64, 64}, 3);
+        testing::analytic_denoiser<double> const phi{.grid = {16, 16}};
+        texel_grid const pixels(to_uv_view(maps), {16, 16});
+        auto const error = [&](noise_kind kind) {
+            auto settings = few_steps();
+            settings.noise.kind = kind;
+            render_report report;
+            auto const z = render(phi, to_uv_view(maps), settings, report);
+            return *correspondence_error(to_view(z), pixels, 5);
+        };
+        auto const uv = error(noise_kind::uv);
+        auto const independent = error(noise_kind::independent);
+        MESSAGE("correspondence error at interval 5: uv ", uv, ", independent ", independent);
+        CHECK(uv < 0.9 * independent);
+    }
+    TEST_CASE("the observer sees every frame and its estimate runs out") {
+        auto const phi = with_attention();
+        auto const settings = few_steps();
+        render_report report;
+        std::size_t calls = 0;
+        std::size_t keyframe_passes = 0;
+        progress last;
+        render(phi, to_uv_view(scene()), settings, report, [&](progress const& state) {
+            ++calls;
+            keyframe_passes += state.pass == render_pass::keyframes ? 1U : 0U;
+            CHECK(state.steps == 4);
+            CHECK(state.frames_done <= state.frames);
+            CHECK(state.elapsed_seconds >= last.elapsed_seconds);
+            last = state;
+            return true;
+        });
+        CHECK(calls == 4 * (1 + 6));
+        CHECK(keyframe_passes == 4);
+        CHECK(last.step == 3);
+        CHECK(last.frames_done == 6);
+        CHECK(last.remaining_seconds == 0);
+        CHECK(report.denoiser_seconds() > 0);
+        CHECK(report.library_seconds() > 0);
+    }
+    TEST_CASE("the observer can end the run") {
+        auto const phi = with_attention();
+        render_report report;
+        std::size_t calls = 0;
+        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(scene()), few_steps(), report,
+                                    [&](progress const&) { return ++calls < 9; }, threaded_loop(2)),
+                             "render: cancelled by its observer in step 2 of 4", cancelled);
+    }
+    TEST_CASE("geometry that fills the frame skips latent normalisation and says so") {
+        uv_maps maps(2, {16, 16});
+        maps.coverage.fill(1);
+        for (std::size_t e = 0; e < maps.uv.size(); ++e) {
+            maps.uv.data()[e] = static_cast<float>(e % 512) / 512;
+        }
+        testing::analytic_denoiser<double> const phi{.grid = {8, 8}};
+        auto settings = few_steps();
+        settings.keyframes.count = 1;
+        render_report report;
+        auto const z = render(phi, to_uv_view(maps), settings, report);
+        CHECK(report.skipped_frames() == std::set<std::size_t>{0, 1});
+        CHECK(std::isfinite(z(1, 0, 0, 0)));
+    }
+    TEST_CASE("a scene that shows nothing has no coverage and still renders") {
+        uv_maps const maps(3, {16, 16});
+        testing::analytic_denoiser<double> const phi{.grid = {8, 8}, .attention = 0.5};
+        render_report report;
+        auto const z = render(phi, to_uv_view(maps), few_steps(), report);
+        CHECK(report.coverage().at({8, 8}).on_objects == 0);
+        CHECK(report.coverage().at({8, 8}).share() == 0);
+        CHECK(std::isfinite(z(2, 2, 7, 7)));
+    }
+    TEST_CASE("arguments that no run could honour are refused by name before anything runs") {
+        auto const phi = with_attention();
+        render_report report;
+        auto const refuses = [&](auto&& change, char const* text) {
+            auto settings = few_steps();
+            change(settings);
+            CHECK_THROWS_WITH_AS(render(phi, to_uv_view(scene()), settings, report), text, value_error);
+        };
+        refuses([](auto& s) { s.keyframes.count = 7; },
+                "draw_keyframes: count is 7, expected 1 to the animation's 6 frames");
+        refuses([](auto& s) { s.keyframes.count = 0; },
+                "draw_keyframes: count is 0, expected 1 to the animation's 6 frames");
+        refuses([](auto& s) { s.steps = 0; }, "render: settings.steps is 0, expected at least one step");
+        refuses([](auto& s) { s.frames_per_call = 0; }, "render: settings.frames_per_call is 0, expected at least one frame");
+        refuses([](auto& s) { s.window_begin = 2; },
+                "render: settings.window_begin is 2.000000, expected 0 <= window_begin <= window_end <= 1");
+        uv_maps const none(0, {32, 32});
+        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(none), few_steps(), report),
+                             "render: UV.frame_count() is 0, expected at least one frame", value_error);
+        uv_maps const odd(3, {30, 32});
+        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(odd), few_steps(), report),
+                             "initial_noise: grid is [8, 8], expected extents that divide the UV maps' [30, 32]", value_error);
+    }
+}

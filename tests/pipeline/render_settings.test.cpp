@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 4] The defaults are the paper's.
+#include <genrender/pipeline/render_settings.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace genrender;
+
+TEST_SUITE("pipeline/render_settings") {
+    TEST_CASE_TEMPLATE("defaults follow the paper and the list of readings", Real, float, double) {
+        render_settings<Real> const settings;
+        CHECK(settings.steps == 50);
+        CHECK(settings.sigma_max == Real(14.6146));
+        CHECK(settings.method == sampler::euler);
+        CHECK(settings.noise.kind == noise_kind::uv);
+        CHECK(settings.noise.background == background_noise::fixed);
+        CHECK(settings.keyframes.drawing == keyframe_drawing::uniform);
+        CHECK(settings.alpha(3, {}) == Real(0.7));
+        CHECK(settings.first_fill_share == Real(0.5));
+        CHECK(settings.keeps_own_copy);
+        CHECK(!settings.normalization.on_noisy_latents);
+    }
+    TEST_CASE("by default the decoder of the denoising network takes part and a ControlNet does not") {
+        attention_site site;
+        CHECK(is_in_decoder(site, 0));
+        CHECK(is_in_decoder(site, 1));
+        site.network = network_kind::control;
+        CHECK(!is_in_decoder(site, 0));
+        site.network = network_kind::denoiser;
+        site.part = network_part::encoder;
+        CHECK(!is_in_decoder(site, 0));
+        site.part = network_part::middle;
+        CHECK(!is_in_decoder(site, 0));
+    }
+}

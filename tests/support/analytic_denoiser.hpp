@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// A denoiser whose exact answer is known: clean latents are N(mean, spread^2) in every pixel, and attention is a share of it.
+#pragma once
+
+#include <genrender/injection/host_attention_call.hpp>
+#include <genrender/sampling/denoiser.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace genrender::testing {
+
+/// Projections that leave features as they are: Q = K = V = f.
+struct identity_projections {
+    template <class Real>
+    void query(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
+        copy(out, in_view<Real, 2>(f));
+    }
+    template <class Real>
+    void key(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
+        copy(out, in_view<Real, 2>(f));
+    }
+    template <class Real>
+    void value(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
+        copy(out, in_view<Real, 2>(f));
+    }
+    std::size_t heads() const { return 1; }
+};
+
+/// D(z, sigma) = (1 - attention) E[clean | z] + attention F, where E is the posterior mean for clean ~ N(mean, spread^2) and F
+/// the output of one decoder site whose input is the posterior mean, a token a pixel. With attention = 0 the sampler's limit
+/// is known: z_0 = mean + (z_T - mean) spread / sqrt(spread^2 + sigma_T^2).
+template <class Real>
+struct analytic_denoiser {
+    using real_type = Real;
+    using features_type = host_features<Real>;
+
+    grid_extents grid;
+    std::size_t channels = 3;
+    Real mean = Real(0.5);
+    Real spread = Real(0.25);
+    Real attention = 0;
+    std::size_t guidance_branches = 1;
+    std::vector<attention_site> site_list = {
+        {"encoder.attn1", network_kind::denoiser, network_part::encoder, grid, channels},
+        {"control.attn1", network_kind::control, network_part::decoder, grid, channels},
+        {"decoder.attn1", network_kind::denoiser, network_part::decoder, grid, channels}};
+
+    std::size_t latent_channels() const { return channels; }
+    grid_extents latent_grid() const { return grid; }
+    std::span<attention_site const> sites() const { return site_list; }
+    std::size_t branches() const { return guidance_branches; }
+
+    template <class Processor>
+    void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma, std::span<frame_index const> frames,
+                    Processor& processor) const {
+        auto const tokens = grid.size();
+        auto posterior = features_type::allocate({frames.size(), tokens, channels});
+        auto const gain = spread * spread / (spread * spread + sigma * sigma);
+        for_each(z, [&](std::size_t i, std::size_t c, std::size_t row, std::size_t column) {
+            posterior.view()(i, row * grid.width + column, c) = mean + gain * (z(i, c, row, column) - mean);
+        });
+        // Branches differ in their features by sign, so that mixing them up would show.
+        identity_projections const module;
+        std::vector<features_type> F;
+        for (std::uint32_t branch = 0; branch < guidance_branches; ++branch) {
+            auto f = features_type::allocate(posterior.extents());
+            for (std::size_t e = 0; e < f.view().size(); ++e) {
+                f.view().data()[e] = (branch == 0 ? Real{1} : Real{-1}) * posterior.view().data()[e];
+            }
+            for (std::uint32_t site = 0; site < site_list.size(); ++site) {
+                host_attention_call<Real, identity_projections> call({{site}, branch}, frames, f, module);
+                auto const out = processor(call);
+                if (site + 1 == site_list.size()) {
+                    F.push_back(out);
+                }
+            }
+        }
+        for_each(x0, [&](std::size_t i, std::size_t c, std::size_t row, std::size_t column) {
+            auto const t = row * grid.width + column;
+            Real mixed = 0;
+            for (std::size_t branch = 0; branch < guidance_branches; ++branch) {
+                mixed += (branch == 0 ? Real{1} : Real{-1}) * F[branch].view()(i, t, c) / static_cast<Real>(guidance_branches);
+            }
+            x0(i, c, row, column) = (1 - attention) * posterior.view()(i, t, c) + attention * mixed;
+        });
+    }
+
+private:
+    template <class View, class Visit>
+    static void for_each(View const& view, Visit const& visit) {
+        for (std::size_t i = 0; i < view.extent(0); ++i) {
+            for (std::size_t c = 0; c < view.extent(1); ++c) {
+                for (std::size_t row = 0; row < view.extent(2); ++row) {
+                    for (std::size_t column = 0; column < view.extent(3); ++column) {
+                        visit(i, c, row, column);
+                    }
+                }
+            }
+        }
+    }
+};
+
+} // namespace genrender::testing
