@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 5] Balls and boxes that fall on the ground, bounce, collide and come to rest: rigid bodies simulated by Bullet.
+// [GR sec. 5] Balls and boxes that fall on the ground, bounce and come to rest: rigid bodies simulated by Bullet.
 #pragma once
 
 #include <genrender/scene/animation.hpp>
@@ -22,11 +22,12 @@
 
 namespace genrender::scenes {
 
-/// A few textured balls and boxes dropped on a ground plane. The simulation runs at a fixed step when the scene is made and all
-/// of its transforms are kept, so every frame is there at once and always the same. A model of animation.
+/// A few textured balls and boxes dropped on a ground plane. The simulation runs at a fixed step when the scene is made
+/// and all of its transforms are kept, so every frame is there at once and always the same. A model of animation.
 class bouncing_balls {
 public:
-    /// `frame_count` frames, evenly spread over the simulated time: two seconds, or more than that at 24 frames a second.
+    /// `frame_count` frames, evenly spread over the simulated time: two seconds, or more than that at 24 frames a
+    /// second.
     explicit bouncing_balls(std::size_t frame_count) : frame_count_(frame_count) {
         ground_ = pose({0}, std::make_shared<mesh const>(make_plane({16, 16}, 8)), glm::mat4(1));
         simulate();
@@ -118,7 +119,8 @@ private:
         auto const spacing = frame_count_ > 1 ? seconds / static_cast<double>(frame_count_ - 1) : 0.0;
         long step = 0;
         for (std::size_t frame = 0; frame < frame_count_; ++frame) {
-            for (auto const end = std::lround(static_cast<double>(frame) * spacing * steps_per_second); step < end; ++step) {
+            for (auto const end = std::lround(static_cast<double>(frame) * spacing * steps_per_second); step < end;
+                 ++step) {
                 world.stepSimulation(btScalar(1) / steps_per_second, 0);
             }
             for (std::size_t body = 0; body < surfaces_.size(); ++body) {

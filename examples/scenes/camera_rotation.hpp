@@ -22,8 +22,10 @@ namespace genrender::scenes {
 /// Columns, balls and blocks around a globe on a plinth; nothing moves but the camera. A model of animation.
 class camera_rotation {
 public:
-    /// The camera goes through `turn` radians in all, in equal steps; after a whole turn the last frame is followed by the first.
-    explicit camera_rotation(std::size_t frame_count, float turn = glm::radians(360.0f)) : frame_count_(frame_count), turn_(turn) {
+    /// The camera goes through `turn` radians in all, in equal steps; after a whole turn the last frame is followed by
+    /// the first.
+    explicit camera_rotation(std::size_t frame_count, float turn = glm::radians(360.0f))
+        : frame_count_(frame_count), turn_(turn) {
         place(make_disk(7.5f, 96), {0, 0, 0});
         place(make_cylinder(0.85f, 0.7f, 48), {0, 0.35f, 0});
         place(make_sphere(0.8f, 64), {0, 1.5f, 0});

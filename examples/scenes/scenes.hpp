@@ -25,7 +25,9 @@ public:
     template <animation Animation>
     explicit any_animation(Animation scene) : frame_count_(scene.frame_count()) {
         // Shared, because std::function copies what it holds and a scene may be large.
-        frame_ = [shared = std::make_shared<Animation const>(std::move(scene))](frame_index i) { return shared->frame(i); };
+        frame_ = [shared = std::make_shared<Animation const>(std::move(scene))](frame_index i) {
+            return shared->frame(i);
+        };
     }
 
     std::size_t frame_count() const { return frame_count_; }

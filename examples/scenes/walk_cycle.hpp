@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How joints turn in a walk: angles over one cycle, after the curves of gait analysis (Perry & Burnfield, 'Gait Analysis').
+// How joints turn in a walk: angles over one cycle, shaped after gait analysis (Perry & Burnfield, Gait Analysis).
 #pragma once
 
 #include <glm/trigonometric.hpp>
@@ -24,8 +24,8 @@ inline float phase_bump(float phase, float centre, float width) {
     return std::exp(-(distance / width) * (distance / width));
 }
 
-/// The limbs of one side; phase 0 is the moment this side's heel meets the ground, 1 the next time it does; toes leave the
-/// ground at about 0.62. The other side is half a cycle away.
+/// The limbs of one side; phase 0 is the moment this side's heel meets the ground, 1 the next time it does; toes leave
+/// the ground at about 0.62. The other side is half a cycle away.
 inline limb_angles limbs_at(float phase) {
     auto const turn = 2 * std::numbers::pi_v<float>;
     limb_angles degrees{};

@@ -25,7 +25,8 @@
 
 namespace genrender::scenes {
 
-/// A walking mannequin. Its feet find the ground and the ground passes at the speed of the standing foot. A model of animation.
+/// A walking mannequin. Its feet find the ground and the ground passes at the speed of the standing foot. A model of
+/// animation.
 class walking_figure {
 public:
     /// One whole walk cycle (two steps) for every 24 frames, at least one; it begins and ends at the same phase.
@@ -69,7 +70,8 @@ private:
 
     void place(mesh surface, glm::vec3 at) {
         object_index const number{static_cast<std::uint32_t>(objects_.size())};
-        objects_.push_back(pose(number, std::make_shared<mesh const>(std::move(surface)), glm::translate(glm::mat4(1), at)));
+        objects_.push_back(
+            pose(number, std::make_shared<mesh const>(std::move(surface)), glm::translate(glm::mat4(1), at)));
     }
 
     /// Posed positions at a phase of the walk, with the lowest on y = 0 and the pelvis over the origin.
@@ -87,7 +89,9 @@ private:
 
     std::vector<glm::mat4> joint_transforms(float phase) const {
         auto local = figure_.bones.rest;
-        auto const turn = [&](std::uint32_t joint, float angle, glm::vec3 axis) { local[joint] = glm::rotate(local[joint], angle, axis); };
+        auto const turn = [&](std::uint32_t joint, float angle, glm::vec3 axis) {
+            local[joint] = glm::rotate(local[joint], angle, axis);
+        };
         constexpr glm::vec3 sideways{1, 0, 0}, upwards{0, 1, 0}, forwards{0, 0, 1};
         auto const trunk = trunk_at(phase);
         local[pelvis] = glm::translate(local[pelvis], {trunk.sway, 0, 0});
@@ -120,7 +124,8 @@ private:
         auto now = standing(0);
         for (int k = 0; k < samples; ++k) {
             auto next = standing(static_cast<float>((k + 1) % samples) / samples);
-            auto const lowest = std::min_element(now.begin(), now.end(), [](auto const& a, auto const& b) { return a.y < b.y; });
+            auto const lowest =
+                std::min_element(now.begin(), now.end(), [](auto const& a, auto const& b) { return a.y < b.y; });
             stride += lowest->z - next[static_cast<std::size_t>(lowest - now.begin())].z;
             now = std::move(next);
         }

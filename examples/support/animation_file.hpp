@@ -22,7 +22,7 @@ namespace genrender::examples {
 /// How frames become a moving picture.
 struct animation_file_options {
     double frames_per_second = 12; ///< above 0, at most 1000: the file counts in milliseconds
-    int near_lossless = 100;       ///< 100: every pixel as it is; down to 0: values may move a little, files get smaller
+    int near_lossless = 100; ///< 100: every pixel as it is; down to 0: values may move a little, files get smaller
 };
 
 namespace detail {
@@ -50,9 +50,9 @@ struct webp_data {
 
 } // namespace detail
 
-/// Writes the frames as an animated WebP that loops for ever, whole or not at all; equal neighbours become one longer frame.
-/// Throws value_error if there are no frames or the options are out of range, shape_error if frames differ in extents or a side
-/// is above 16383, file_error if the file cannot be written.
+/// Writes the frames as an animated WebP that loops for ever, whole or not at all; equal neighbours become one longer
+/// frame. Throws value_error if there are no frames or the options are out of range, shape_error if frames differ in
+/// extents or a side is above 16383, file_error if the file cannot be written.
 inline void write_animation(std::filesystem::path const& path, std::span<rgb8_image const> frames,
                             animation_file_options const& options = {}) {
     require_value(!frames.empty(), "write_animation", "frames", "empty", "at least one frame");
@@ -72,7 +72,8 @@ inline void write_animation(std::filesystem::path const& path, std::span<rgb8_im
     }
     auto const require = [&](bool succeeded, std::string const& reason) {
         if (!succeeded) {
-            throw file_error(path.string() + ": cannot be made a WebP animation (" + reason + "), expected enough memory");
+            throw file_error(path.string() + ": cannot be made a WebP animation (" + reason +
+                             "), expected enough memory");
         }
     };
 

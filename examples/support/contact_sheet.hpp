@@ -27,16 +27,17 @@ struct contact_sheet_options {
     rgb8 ink{230, 230, 230};
 };
 
-/// Draws text with its top left corner at (row, column), characters 6 pixels apart; what lies beyond `end_column` or the
-/// image is not drawn.
-inline void draw_text(rgb8_image& image, std::string_view text, std::size_t row, std::size_t column, std::size_t end_column,
-                      rgb8 ink) {
+/// Draws text with its top left corner at (row, column), characters 6 pixels apart; what lies beyond `end_column` or
+/// the image is not drawn.
+inline void draw_text(rgb8_image& image, std::string_view text, std::size_t row, std::size_t column,
+                      std::size_t end_column, rgb8 ink) {
     for (std::size_t i = 0; i < text.size(); ++i) {
         auto const& rows = glyph(text[i]);
         for (std::size_t y = 0; y < rows.size(); ++y) {
             for (std::size_t x = 0; x < 5; ++x) {
                 auto const at = column + 6 * i + x;
-                if (((rows[y] >> (4 - x)) & 1) != 0 && row + y < image.height && at < std::min(end_column, image.width)) {
+                if (((rows[y] >> (4 - x)) & 1) != 0 && row + y < image.height &&
+                    at < std::min(end_column, image.width)) {
                     image.set(row + y, at, ink);
                 }
             }
@@ -44,8 +45,8 @@ inline void draw_text(rgb8_image& image, std::string_view text, std::size_t row,
     }
 }
 
-/// All frames on one sheet, row by row from the top left. Throws value_error if there are none, shape_error if they differ in
-/// extents or are not as many as the labels.
+/// All frames on one sheet, row by row from the top left. Throws value_error if there are none, shape_error if they
+/// differ in extents or are not as many as the labels.
 inline rgb8_image contact_sheet(std::span<rgb8_image const> frames, contact_sheet_options const& options = {}) {
     require_value(!frames.empty(), "contact_sheet", "frames", "empty", "at least one frame");
     require_value(options.enlargement > 0, "contact_sheet", "enlargement", options.enlargement, "at least 1");
@@ -63,8 +64,8 @@ inline rgb8_image contact_sheet(std::span<rgb8_image const> frames, contact_shee
     auto const width = frames[0].width * options.enlargement;
     auto const label_height = options.labels.empty() ? std::size_t{0} : std::size_t{9};
     auto const square = std::ceil(std::sqrt(static_cast<double>(frames.size() * height) / static_cast<double>(width)));
-    auto const columns = std::clamp<std::size_t>(options.columns > 0 ? options.columns : static_cast<std::size_t>(square), 1,
-                                                 frames.size());
+    auto const columns = std::clamp<std::size_t>(
+        options.columns > 0 ? options.columns : static_cast<std::size_t>(square), 1, frames.size());
     auto const rows = (frames.size() + columns - 1) / columns;
     auto const row_step = height + label_height + options.margin;
     auto const column_step = width + options.margin;
@@ -76,7 +77,8 @@ inline rgb8_image contact_sheet(std::span<rgb8_image const> frames, contact_shee
         auto const left = options.margin + i % columns * column_step;
         for (std::size_t row = 0; row < height; ++row) {
             for (std::size_t column = 0; column < width; ++column) {
-                sheet.set(top + row, left + column, frames[i].at(row / options.enlargement, column / options.enlargement));
+                sheet.set(top + row, left + column,
+                          frames[i].at(row / options.enlargement, column / options.enlargement));
             }
         }
         if (label_height > 0) {

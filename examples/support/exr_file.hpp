@@ -31,7 +31,8 @@ struct exr_channel {
     Imf::PixelType type = Imf::FLOAT;
 };
 
-/// An open EXR file. Every failure of the EXR library leaves as a file_error that names the file and the library's reason.
+/// An open EXR file. Every failure of the EXR library leaves as a file_error that names the file and the library's
+/// reason.
 class exr_file {
 public:
     /// Reads the headers. Throws file_error if the file is missing, foreign, broken, of deep data, or larger than
@@ -66,8 +67,8 @@ public:
         return text.empty() ? "no channels" : text;
     }
 
-    /// The values of one channel [height, width] over the display window; what lies outside the channel's data window is
-    /// `outside`. 16-bit floats and integers are converted. Throws file_error if the pixels cannot be read.
+    /// The values of one channel [height, width] over the display window; what lies outside the channel's data window
+    /// is `outside`. 16-bit floats and integers are converted. Throws file_error if the pixels cannot be read.
     std::vector<float> plane(exr_channel const& channel, float outside) const {
         return std::move(planes(std::span(&channel, 1), outside).front());
     }
@@ -119,10 +120,11 @@ private:
             // Some writers leave the layer to the part's name: part "ViewLayer.UV", channel "U".
             auto const layer_is_in_part = header.hasName() && own_name.find('.') == std::string::npos &&
                                           header.name().find('.') != std::string::npos;
-            channels_.push_back({layer_is_in_part ? header.name() + "." + own_name : own_name, own_name, part,
-                                 channel.channel().type});
+            channels_.push_back(
+                {layer_is_in_part ? header.name() + "." + own_name : own_name, own_name, part, channel.channel().type});
             if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
-                throw file_error(path_.string() + ": channel " + own_name + " is subsampled, expected one value a pixel");
+                throw file_error(path_.string() + ": channel " + own_name +
+                                 " is subsampled, expected one value a pixel");
             }
         }
     }
@@ -155,9 +157,12 @@ private:
         auto const width = grid().width;
         auto const left = std::max(data.min.x, window_.min.x);
         auto const right = std::min(data.max.x, window_.max.x);
-        for (auto y = std::max(data.min.y, window_.min.y); left <= right && y <= std::min(data.max.y, window_.max.y); ++y) {
-            auto const from = static_cast<std::size_t>(y - data.min.y) * stored.width + static_cast<std::size_t>(left - data.min.x);
-            auto const to = static_cast<std::size_t>(y - window_.min.y) * width + static_cast<std::size_t>(left - window_.min.x);
+        for (auto y = std::max(data.min.y, window_.min.y); left <= right && y <= std::min(data.max.y, window_.max.y);
+             ++y) {
+            auto const from =
+                static_cast<std::size_t>(y - data.min.y) * stored.width + static_cast<std::size_t>(left - data.min.x);
+            auto const to =
+                static_cast<std::size_t>(y - window_.min.y) * width + static_cast<std::size_t>(left - window_.min.x);
             for (auto const& [i, pixels] : read) {
                 std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(from), right - left + 1,
                             result[i].begin() + static_cast<std::ptrdiff_t>(to));

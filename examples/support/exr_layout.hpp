@@ -85,9 +85,9 @@ inline void require_float(exr_file const& file, exr_channel const& channel) {
 
 } // namespace detail
 
-/// The channels of the maps in `file`. `layer` names the view layer; empty takes the first that has all the passes, or
-/// the plain layout if no layer has any. Throws file_error that lists what the file has and names what is missing, or if
-/// UV or depth are integers.
+/// The channels of the maps in `file`. `layer` names the view layer; empty takes the first that has all the passes,
+/// or the plain layout if no layer has any. Throws file_error that lists what the file has and names what is missing,
+/// or if UV or depth are integers.
 inline exr_map_channels find_map_channels(exr_file const& file, std::string const& layer = "") {
     auto const path = file.path().string();
     exr_map_channels found;

@@ -19,26 +19,26 @@
 #include <string>
 #include <vector>
 
-// In Blender: Cycles, one sample, pixel filter width 0.01 px (UVs of several surfaces must not mix in a pixel); View Layer >
-// Passes: Z, UV, Object Index; Object > Relations > Pass Index, a number of its own for every object; Output: OpenEXR
-// MultiLayer, Float (Full).
+// In Blender: Cycles, one sample, pixel filter width 0.01 px (UVs of several surfaces must not mix in a pixel); View
+// Layer > Passes: Z, UV, Object Index; Object > Relations > Pass Index, a number of its own for every object; Output:
+// OpenEXR MultiLayer, Float (Full).
 
 namespace genrender::examples {
 
 /// How a folder of EXR files is read.
 struct exr_sequence_options {
-    std::string layer{};                  ///< view layer to read; empty: the first that has all the passes
-    std::optional<bool> v_upwards{};      ///< whether the file's v = 0 is the texture's bottom, so that 1 - v is read;
-                                          ///< without a value true for Blender's layout, false for the plain one
+    std::string layer{};                   ///< view layer to read; empty: the first that has all the passes
+    std::optional<bool> v_upwards{};       ///< whether the file's v = 0 is the texture's bottom, so that 1 - v is read;
+                                           ///< without a value true for Blender's layout, false for the plain one
     uv_outside outside = uv_outside::keep; ///< what becomes of coordinates outside [0, 1], which tiled textures have
 };
 
 /// The maps of a folder, and what its reader noticed.
 struct exr_sequence {
     uv_maps uv;
-    depth_maps depth;                          ///< covered where `uv` is
-    std::vector<std::filesystem::path> files;  ///< the file of each frame
-    std::vector<std::string> notes;            ///< sentences about what is readable and may not be meant
+    depth_maps depth;                         ///< covered where `uv` is
+    std::vector<std::filesystem::path> files; ///< the file of each frame
+    std::vector<std::string> notes;           ///< sentences about what is readable and may not be meant
 };
 
 namespace detail {
@@ -75,7 +75,8 @@ inline std::vector<std::filesystem::path> exr_files(std::filesystem::path const&
     std::vector<std::filesystem::path> files;
     std::string picture;
     std::error_code failure;
-    for (std::filesystem::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure)) {
+    for (std::filesystem::directory_iterator entry(folder, failure), end; !failure && entry != end;
+         entry.increment(failure)) {
         auto ending = entry->path().extension().string();
         std::transform(ending.begin(), ending.end(), ending.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -86,18 +87,19 @@ inline std::vector<std::filesystem::path> exr_files(std::filesystem::path const&
         }
     }
     if (failure) {
-        throw file_error(folder.string() + ": cannot be read (" + failure.message() + "), expected a folder of EXR files");
+        throw file_error(folder.string() + ": cannot be read (" + failure.message() +
+                         "), expected a folder of EXR files");
     }
     if (files.empty() && !picture.empty()) {
-        throw file_error(folder.string() + ": holds 8-bit pictures (" + picture +
-                         ") and no EXR file, expected 32-bit float EXR (256 levels of u and v cannot address a texture)");
+        throw file_error(
+            folder.string() + ": holds 8-bit pictures (" + picture +
+            ") and no EXR file, expected 32-bit float EXR (256 levels of u and v cannot address a texture)");
     }
     if (files.empty()) {
         throw file_error(folder.string() + ": holds no EXR file, expected one a frame");
     }
-    std::sort(files.begin(), files.end(), [](auto const& a, auto const& b) {
-        return comes_before(a.filename().string(), b.filename().string());
-    });
+    std::sort(files.begin(), files.end(),
+              [](auto const& a, auto const& b) { return comes_before(a.filename().string(), b.filename().string()); });
     return files;
 }
 
@@ -136,8 +138,8 @@ public:
                 auto const v = planes[1][i] / alpha;
                 require(std::isfinite(u) && std::isfinite(v), file, row, column, "UV is not a finite number",
                         "texture coordinates where a surface is covered");
-                require(object >= 0 && object < 16777216.0f, file, row, column, "object index is " + std::to_string(object),
-                        "0 to 2^24 - 1");
+                require(object >= 0 && object < 16777216.0f, file, row, column,
+                        "object index is " + std::to_string(object), "0 to 2^24 - 1");
                 outside_ += u < 0 || u > 1 || v < 0 || v > 1;
                 note_level(u);
                 note_level(v);
@@ -169,19 +171,21 @@ public:
             result_.notes.push_back("UV or depth are 16-bit floats (11 bits of precision): render with Float (Full).");
         }
         if (mixed_ > 0) {
-            result_.notes.push_back(share(mixed_) + "mix several surfaces: render one sample, pixel filter width 0.01.");
+            result_.notes.push_back(share(mixed_) +
+                                    "mix several surfaces: render one sample, pixel filter width 0.01.");
         }
         if (outside_ > 0) {
             result_.notes.push_back(share(outside_) + "have u or v outside [0, 1].");
         }
         if (covered_ > 0 && !has_object_ && layout == exr_layout::blender) {
-            result_.notes.push_back("Every object has index 0 and so shares one texture: give each its own Pass Index.");
+            result_.notes.push_back(
+                "Every object has index 0 and so shares one texture: give each its own Pass Index.");
         }
     }
 
 private:
-    static void require(bool holds, exr_file const& file, std::uint32_t row, std::uint32_t column, std::string const& found,
-                        char const* expected) {
+    static void require(bool holds, exr_file const& file, std::uint32_t row, std::uint32_t column,
+                        std::string const& found, char const* expected) {
         if (!holds) {
             throw file_error(file.path().string() + ": at row " + std::to_string(row) + ", column " +
                              std::to_string(column) + " the " + found + ", expected " + expected);
@@ -208,11 +212,11 @@ private:
 
 } // namespace detail
 
-/// The maps of all EXR files of `folder`, ordered by name with digits as numbers, each with the extents of its display
-/// window. A pixel is background where `UV.A` is 0, depth is not in (0, 1e10), or the plain layout's `id` is below 0, and
-/// outside a file's data window. Objects keep the file's index, rounded; v is 0 at the texture's top. Throws file_error that names the file, what was
-/// found and what was expected: no or unreadable folder, no EXR file, 8-bit UV, broken files, missing channels, frames of
-/// different sizes or layouts, impossible values.
+/// The maps of all EXR files of `folder`, ordered by name with digits as numbers, each with the extents of its
+/// display window. A pixel is background where `UV.A` is 0, depth is not in (0, 1e10), or the plain layout's `id` is
+/// below 0, and outside a file's data window. Objects keep the file's index, rounded; v is 0 at the texture's top.
+/// Throws file_error that names the file, what was found and what was expected: no or unreadable folder, no EXR file,
+/// 8-bit UV, broken files, missing channels, frames of different sizes or layouts, impossible values.
 inline exr_sequence load_exr_sequence(std::filesystem::path const& folder, exr_sequence_options const& options = {}) {
     exr_sequence result;
     result.files = detail::exr_files(folder);
@@ -239,8 +243,9 @@ inline exr_sequence load_exr_sequence(std::filesystem::path const& folder, exr_s
         reader.read(frame, file, channels);
     }
     reader.finish(folder, first.layout);
-    adopt_uv(to_view(result.uv.uv), to_view(result.uv.coverage),
-             {.v_upwards = options.v_upwards.value_or(first.layout == exr_layout::blender), .outside = options.outside});
+    adopt_uv(
+        to_view(result.uv.uv), to_view(result.uv.coverage),
+        {.v_upwards = options.v_upwards.value_or(first.layout == exr_layout::blender), .outside = options.outside});
     return result;
 }
 

@@ -25,8 +25,9 @@ struct exr_write_options {
     exr_layout layout = exr_layout::blender;
     std::string layer = "ViewLayer"; ///< Blender layout: the view layer's name
     bool multipart = false;          ///< Blender layout: one part a pass, as newer Blender versions write
-    std::optional<bool> v_upwards{}; ///< write 1 - v; without a value true for Blender's layout, false for the plain one
-    unsigned first_number = 1;       ///< number of the first file: `0001.exr`
+    std::optional<bool>
+        v_upwards{};           ///< write 1 - v; without a value true for Blender's layout, false for the plain one
+    unsigned first_number = 1; ///< number of the first file: `0001.exr`
 };
 
 namespace detail {
@@ -38,7 +39,8 @@ struct exr_output_plane {
     std::vector<float> values;
 };
 
-/// The channels of one frame. Background is what Cycles writes (UV 0, alpha 0, depth 1e10, index 0) or u v 0, id -1, depth 1e10.
+/// The channels of one frame. Background is what Cycles writes (UV 0, alpha 0, depth 1e10, index 0) or u v 0, id -1,
+/// depth 1e10.
 inline std::vector<exr_output_plane> exr_planes_of(uv_maps const& uv, depth_maps const& depth, std::size_t frame,
                                                    exr_write_options const& options) {
     auto const size = uv.grid().size();
@@ -99,7 +101,8 @@ inline void write_exr_planes(std::filesystem::path const& path, std::vector<exr_
     }
     output_file file(path);
     try {
-        Imf::MultiPartOutputFile output(file.temporary().c_str(), headers.data(), static_cast<int>(headers.size()), false, 0);
+        Imf::MultiPartOutputFile output(file.temporary().c_str(), headers.data(), static_cast<int>(headers.size()),
+                                        false, 0);
         for (std::size_t part = 0; part < headers.size(); ++part) {
             Imf::OutputPart target(output, static_cast<int>(part));
             target.setFrameBuffer(buffers[part]);
@@ -113,12 +116,13 @@ inline void write_exr_planes(std::filesystem::path const& path, std::vector<exr_
 
 } // namespace detail
 
-/// Writes one 32-bit float EXR file a frame into `folder` (made if missing), named by number, each whole or not at all, and
-/// returns their paths; `load_exr_sequence` gives the same maps back (v to the rounding of 1 - v). Throws shape_error if the maps differ in
-/// extents, value_error if they differ in coverage, a covered depth is not in (0, 1e10) or an object index is 2^24 or
-/// more (a float cannot hold it), file_error if the folder cannot be written.
+/// Writes one 32-bit float EXR file a frame into `folder` (made if missing), named by number, each whole or not at
+/// all, and returns their paths; `load_exr_sequence` gives the same maps back (v to the rounding of 1 - v). Throws
+/// shape_error if the maps differ in extents, value_error if they differ in coverage, a covered depth is not in (0,
+/// 1e10) or an object index is 2^24 or more (a float cannot hold it), file_error if the folder cannot be written.
 inline std::vector<std::filesystem::path> write_exr_maps(std::filesystem::path const& folder, uv_maps const& uv,
-                                                         depth_maps const& depth, exr_write_options const& options = {}) {
+                                                         depth_maps const& depth,
+                                                         exr_write_options const& options = {}) {
     require_extents("write_exr_maps", "depth.depth", depth.depth.shape(), uv.coverage.shape());
     require_extents("write_exr_maps", "depth.coverage", depth.coverage.shape(), uv.coverage.shape());
     for (std::size_t i = 0; i < uv.coverage.size(); ++i) {
@@ -126,7 +130,8 @@ inline std::vector<std::filesystem::path> write_exr_maps(std::filesystem::path c
         require_value(is_covered == (depth.coverage.data()[i] != 0), "write_exr_maps", "depth.coverage", !is_covered,
                       "the coverage of uv");
         auto const z = depth.depth.data()[i];
-        require_value(!is_covered || (z > 0 && z < 1e10f), "write_exr_maps", "depth.depth", z, "above 0 and below 1e10");
+        require_value(!is_covered || (z > 0 && z < 1e10f), "write_exr_maps", "depth.depth", z,
+                      "above 0 and below 1e10");
         auto const object = uv.object.data()[i];
         require_value(!is_covered || object < 16777216, "write_exr_maps", "uv.object", object, "below 2^24");
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3] Where to look at a loaded model from: the file's own camera, one that sees all frames, or one that goes around.
+// [GR sec. 3] Where a loaded model is looked at from: the file's camera, one that sees all frames, or one that orbits.
 #pragma once
 
 #include "model_nodes.hpp"
@@ -20,7 +20,8 @@
 
 namespace genrender::examples {
 
-/// The direction of a view that comes from `azimuth` (0: from +z, growing towards +x) and `elevation` above the ground, radians.
+/// The direction of a view that comes from `azimuth` (0: from +z, growing towards +x) and `elevation` above the
+/// ground, radians.
 inline glm::vec3 view_direction(float azimuth, float elevation) {
     return {-std::sin(azimuth) * std::cos(elevation), -std::sin(elevation), -std::cos(azimuth) * std::cos(elevation)};
 }
@@ -30,15 +31,15 @@ struct view_axes {
     glm::vec3 right, up, forward;
 
     explicit view_axes(glm::vec3 direction)
-        : right(glm::normalize(glm::cross(direction, glm::vec3(0, 1, 0)))), up(glm::normalize(glm::cross(right, direction))),
-          forward(glm::normalize(direction)) {}
+        : right(glm::normalize(glm::cross(direction, glm::vec3(0, 1, 0)))),
+          up(glm::normalize(glm::cross(right, direction))), forward(glm::normalize(direction)) {}
 };
 
 /// Share of the image's half height and half width that fitted cameras fill.
 inline constexpr float fitted_share = 0.9f;
 
-/// The nearest camera along `direction` that has all `points` within the inner nine tenths of an image of `aspect` = width /
-/// height, in its middle. Exact: the view's four planes touch the points. `direction` must not be vertical.
+/// The nearest camera along `direction` that has all `points` within the inner nine tenths of an image of `aspect` =
+/// width / height, in its middle. Exact: the view's four planes touch the points. `direction` must not be vertical.
 inline camera fit_points(std::span<glm::vec3 const> points, glm::vec3 direction, float vertical_fov, float aspect) {
     view_axes const axes(direction);
     auto const t_y = fitted_share * std::tan(vertical_fov / 2);
@@ -65,7 +66,8 @@ inline camera fit_points(std::span<glm::vec3 const> points, glm::vec3 direction,
     return eye;
 }
 
-/// How far from `centre` cameras must stand to have all `points` within the inner nine tenths of the image from any azimuth.
+/// How far from `centre` cameras must stand to have all `points` within the inner nine tenths of the image from any
+/// azimuth.
 inline float orbit_distance(std::span<glm::vec3 const> points, glm::vec3 centre, float elevation, float vertical_fov,
                             float aspect) {
     auto const t_y = fitted_share * std::tan(vertical_fov / 2);
@@ -86,9 +88,9 @@ inline float orbit_distance(std::span<glm::vec3 const> points, glm::vec3 centre,
     return distance;
 }
 
-/// The file's camera, whose node's space goes to the world by `to_world`. The vertical angle is the file's where the image is at
-/// least as wide as the file's, else it is widened so that the file's whole width stays in view. Throws value_error at a
-/// camera that cannot see.
+/// The file's camera, whose node's space goes to the world by `to_world`. The vertical angle is the file's where the
+/// image is at least as wide as the file's, else it is widened so that the file's whole width stays in view. Throws
+/// value_error at a camera that cannot see.
 inline camera file_camera(aiCamera const& source, glm::mat4 const& to_world, float aspect, float near_distance) {
     auto const position = glm::vec3(to_world * glm::vec4(to_glm(source.mPosition), 1));
     auto const direction = glm::mat3(to_world) * to_glm(source.mLookAt);

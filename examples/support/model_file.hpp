@@ -17,6 +17,7 @@
 #include <assimp/scene.h>
 #include <glm/ext/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -32,7 +33,7 @@ namespace genrender::examples {
 
 /// Where a model is looked at from.
 enum class model_view {
-    automatic, ///< orbiting around a rigid model; for an animated one the file's camera if it sees the model, else still
+    automatic, ///< orbiting around a rigid model; an animated one by the file's camera if that sees it, else still
     file,      ///< the file's first camera, whatever it sees
     still,     ///< one camera for all frames, from `azimuth` and `elevation`, that sees every frame
     orbiting   ///< one turn around the model, which starts at `azimuth`
@@ -47,17 +48,19 @@ enum class model_up {
 
 /// How a model file becomes an animation.
 struct model_options {
-    std::size_t frames = 16;                     ///< number of frames; 0: the whole animation at `frames_per_second`
-    std::optional<double> frames_per_second{};   ///< the animation starts again after its end; without a value `frames` frames
-                                                 ///< go through it once (the end, which a loop shows as its start, is left out)
-    float aspect = 1;                            ///< width / height of the image that cameras are fitted to
-    float vertical_fov = 0.6f;                   ///< of cameras that are not the file's, radians
-    float azimuth = 0.5f;                        ///< 0 looks from +z, pi / 2 from +x; radians
-    float elevation = 0.3f;                      ///< above the ground, radians, in (-pi / 2, pi / 2)
+    /// Number of frames; 0: the whole animation at `frames_per_second`.
+    std::size_t frames = 16;
+    /// Without a value the frames go once through the animation, whose end a loop shows as its start; with one it starts
+    /// again when it is over.
+    std::optional<double> frames_per_second{};
+    float aspect = 1;          ///< width / height of the image that cameras are fitted to
+    float vertical_fov = 0.6f; ///< of cameras that are not the file's, radians
+    float azimuth = 0.5f;      ///< 0 looks from +z, pi / 2 from +x; radians
+    float elevation = 0.3f;    ///< above the ground, radians, in (-pi / 2, pi / 2)
     model_view view = model_view::automatic;
     model_up up = model_up::from_file;
     model_uvs uvs = model_uvs::from_file;
-    std::optional<std::size_t> animation{};      ///< which of the file's; without a value the first that lasts
+    std::optional<std::size_t> animation{}; ///< which of the file's; without a value the first that lasts
 };
 
 /// A loaded model: an animation (see scene/animation.hpp). Copies share the file's data, which nobody changes.
@@ -65,7 +68,7 @@ class model_animation {
 public:
     std::size_t frame_count() const { return times_.size(); }
 
-    /// Frame i: every mesh instance is an object, numbered in the order of the file's nodes. Throws value_error if there is none.
+    /// Frame i: every mesh instance is an object, in the order of the file's nodes. Throws value_error if there is none.
     posed_scene frame(frame_index i) const {
         require_value(i.value < times_.size(), "model_animation", "frame", i.value, "a frame of the animation");
         return {cameras_[i.value], objects_at(times_[i.value])};
@@ -90,14 +93,15 @@ private:
         std::string reason;
         try {
             scene_ = std::shared_ptr<aiScene const>(
-                importer, importer->ReadFile(path_, aiProcess_Triangulate | aiProcess_LimitBoneWeights | aiProcess_FlipUVs |
-                                                        aiProcess_ValidateDataStructure));
+                importer, importer->ReadFile(path_, aiProcess_Triangulate | aiProcess_LimitBoneWeights |
+                                                        aiProcess_FlipUVs | aiProcess_ValidateDataStructure));
             reason = importer->GetErrorString();
         } catch (std::exception const& failure) {
             reason = failure.what();
         }
         if (scene_ == nullptr || scene_->mRootNode == nullptr) {
-            throw file_error(path_ + ": cannot be read as a model (" + reason + "), expected a whole file that assimp knows");
+            throw file_error(path_ + ": cannot be read as a model (" + reason +
+                             "), expected a whole file that assimp knows");
         }
     }
 
@@ -133,22 +137,23 @@ private:
         report_.seconds = duration / ticks_per_second;
         require_value(options.frames > 0 || fps > 0, "load_model", "options.frames", options.frames,
                       "at least 1, or frames_per_second");
-        auto const frames = options.frames > 0
-                                ? options.frames
-                                : std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(report_.seconds * fps)));
+        auto const frames =
+            options.frames > 0 ? options.frames
+                               : std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(report_.seconds * fps)));
         for (std::size_t i = 0; i < frames; ++i) {
             auto const frame = static_cast<double>(i);
-            auto const ticks = fps > 0 ? frame * ticks_per_second / fps : frame * duration / static_cast<double>(frames);
+            auto const ticks =
+                fps > 0 ? frame * ticks_per_second / fps : frame * duration / static_cast<double>(frames);
             times_.push_back(begin + (duration > 0 ? std::fmod(ticks, duration) : 0.0));
         }
         if (scene_->mNumAnimations > 1) {
-            report_.notes.push_back("Plays " + report_.animation + ", one of " + std::to_string(scene_->mNumAnimations) +
-                                    " animations.");
+            report_.notes.push_back("Plays " + report_.animation + ", one of " +
+                                    std::to_string(scene_->mNumAnimations) + " animations.");
         }
     }
 
     glm::mat4 to_y_up(model_up up) {
-        // Most readers turn the scene themselves, as their format defines its axes. FBX only tells; Blender's files are z-up
+        // Most readers turn the scene themselves, as their format defines its axes; FBX tells; Blender's files are z-up
         int axis = up == model_up::z ? 2 : 1;
         if (up == model_up::from_file) {
             auto const is_turned = !scene_->mRootNode->mTransformation.IsIdentity();
@@ -192,8 +197,8 @@ private:
     }
 
     void choose_cameras(bool is_animated, model_options const& options) {
-        require_value(options.aspect > 0 && std::isfinite(options.aspect), "load_model", "options.aspect", options.aspect,
-                      "width / height above 0");
+        require_value(options.aspect > 0 && std::isfinite(options.aspect), "load_model", "options.aspect",
+                      options.aspect, "width / height above 0");
         require_value(options.vertical_fov > 0 && options.vertical_fov < 3.1f, "load_model", "options.vertical_fov",
                       options.vertical_fov, "an angle between 0 and pi");
         require_value(std::abs(options.elevation) < 1.57f, "load_model", "options.elevation", options.elevation,
@@ -205,7 +210,8 @@ private:
             for (auto const& object : objects_at(times_[i])) {
                 for (auto const& p : object.positions) {
                     if (!is_place(p)) {
-                        throw file_error(path_ + ": moves vertices to places that are not finite, expected coordinates");
+                        throw file_error(path_ +
+                                         ": moves vertices to places that are not finite, expected coordinates");
                     }
                     points.push_back(p);
                 }
@@ -241,16 +247,21 @@ private:
         }
     }
 
-    // Returns whether there are cameras now. One that hardly sees the model belongs to a scene that this file is a part of.
+    // Returns whether there are cameras now. One that hardly sees the model belongs to a scene that this file is a
+    // part of.
     bool use_file_camera(std::span<glm::vec3 const> points, bounds const& box, model_options const& options) {
-        auto const* const source = scene_->mNumCameras > 0 ? scene_->mCameras[0] : nullptr;
-        auto const node = source != nullptr ? nodes_->find(source->mName) : std::nullopt;
-        if (!node || source->mOrthographicWidth > 0) {
+        auto source = scene_->mNumCameras > 0 ? *scene_->mCameras[0] : aiCamera{};
+        auto const node = scene_->mNumCameras > 0 ? nodes_->find(source.mName) : std::nullopt;
+        if (!node || source.mOrthographicWidth > 0) {
             return false;
         }
+        // A glTF camera stands where its node is; assimp 5.2 adds the node's translation once more
+        auto const ending = std::filesystem::path(path_).extension();
+        source.mPosition = ending == ".gltf" || ending == ".glb" ? aiVector3D{} : source.mPosition;
         try {
             for (auto const time : times_) {
-                cameras_.push_back(file_camera(*source, nodes_->to_world(time)[*node], options.aspect, 1e-3f * box.radius()));
+                cameras_.push_back(
+                    file_camera(source, nodes_->to_world(time)[*node], options.aspect, 1e-3f * box.radius()));
             }
         } catch (value_error const& reason) {
             report_.notes.push_back(std::string("The file's camera cannot be used: ") + reason.what() + ".");
@@ -259,7 +270,8 @@ private:
         }
         auto const percent = 100 * count_seen(cameras_.front(), points, options.aspect) / points.size();
         if (options.view == model_view::automatic && percent < 50) {
-            report_.notes.push_back("The file's camera is not used: it sees " + std::to_string(percent) + " % of the model.");
+            report_.notes.push_back("The file's camera is not used: it sees " + std::to_string(percent) +
+                                    " % of the model.");
             cameras_.clear();
             return false;
         }
@@ -279,9 +291,9 @@ private:
 
 static_assert(animation<model_animation>);
 
-/// The model in `path`: nodes, skins of up to four joints a vertex and morph targets move as the file says; materials are left
-/// out; v is 0 at the texture's top. A mesh without UVs gets an atlas of its triangles. Throws file_error with assimp's
-/// reason if the file cannot be read or holds nothing to see, value_error at impossible options.
+/// The model in `path`: nodes, skins of up to four joints a vertex and morph targets move as the file says; materials
+/// are left out; v is 0 at the texture's top. A mesh without UVs gets an atlas of its triangles. Throws file_error
+/// with assimp's reason if the file cannot be read or holds nothing to see, value_error at impossible options.
 inline model_animation load_model(std::filesystem::path const& path, model_options const& options = {}) {
     return model_animation(path, options);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The nodes of a model file and how an animation moves them: keys between which positions and scales go straight, rotations round.
+// The nodes of a model file and how its keys move them: positions and scales go straight between keys, rotations round.
 #pragma once
 
 #include <assimp/anim.h>
@@ -26,17 +26,11 @@ namespace genrender::examples {
 inline glm::mat4 to_glm(aiMatrix4x4 const& m) {
     return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
 }
-inline glm::vec3 to_glm(aiVector3D const& p) {
-    return {p.x, p.y, p.z};
-}
-inline glm::quat to_glm(aiQuaternion const& q) {
-    return glm::normalize(glm::quat(q.w, q.x, q.y, q.z));
-}
+inline glm::vec3 to_glm(aiVector3D const& p) { return {p.x, p.y, p.z}; }
+inline glm::quat to_glm(aiQuaternion const& q) { return glm::normalize(glm::quat(q.w, q.x, q.y, q.z)); }
 
 /// Whether all coordinates are finite numbers.
-inline bool is_place(glm::vec3 const& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
+inline bool is_place(glm::vec3 const& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Between which two keys a time lies, and how far: 0 at `first`, 1 at `second`, beyond them only when extrapolated.
 struct key_interval {
@@ -45,9 +39,10 @@ struct key_interval {
     double factor = 0;
 };
 
-/// Where `time` lies among keys that are sorted by time. Before the first and after the last key: `before` and `after` repeat
-/// the keys from the start, or go on along the two outermost ones; else the outermost key holds. (assimp's "default" would
-/// jump to the pose without animation; glTF, FBX and X mean the nearest key, and so do viewers.) There must be a key.
+/// Where `time` lies among keys that are sorted by time. Before the first and after the last key: `before` and
+/// `after` repeat the keys from the start, or go on along the two outermost ones; else the outermost key holds.
+/// (assimp's "default" would jump to the pose without animation; glTF, FBX and X mean the nearest key, and so do
+/// viewers.) There must be a key.
 template <class Key>
 key_interval interval_at(std::span<Key const> keys, double time, aiAnimBehaviour before, aiAnimBehaviour after) {
     auto const begin = keys.front().mTime;
@@ -61,7 +56,8 @@ key_interval interval_at(std::span<Key const> keys, double time, aiAnimBehaviour
     if (keys.size() == 1) {
         return {};
     }
-    auto const later = std::upper_bound(keys.begin(), keys.end(), time, [](double t, Key const& key) { return t < key.mTime; });
+    auto const later =
+        std::upper_bound(keys.begin(), keys.end(), time, [](double t, Key const& key) { return t < key.mTime; });
     auto const second = static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(later - keys.begin(), 1, static_cast<std::ptrdiff_t>(keys.size()) - 1));
     auto const span = keys[second].mTime - keys[second - 1].mTime;
@@ -162,8 +158,9 @@ public:
         std::vector<glm::mat4> result;
         result.reserve(nodes_.size());
         for (auto const& entry : nodes_) {
-            auto const local = entry.channel != nullptr ? transform_at(*entry.channel, entry.source->mTransformation, time)
-                                                        : to_glm(entry.source->mTransformation);
+            auto const local = entry.channel != nullptr
+                                   ? transform_at(*entry.channel, entry.source->mTransformation, time)
+                                   : to_glm(entry.source->mTransformation);
             result.push_back((entry.parent ? result[*entry.parent] : to_y_up_) * local);
         }
         return result;

@@ -38,7 +38,8 @@ enum class model_uvs {
 /// offsets, G the joints' nodes, B the inverse binds; without joints G is the mesh's own node.
 class model_part {
 public:
-    /// Throws file_error that begins with `path` if positions are not finite or triangles name vertices that do not exist.
+    /// Throws file_error that begins with `path` if positions are not finite or triangles name vertices that do not
+    /// exist.
     model_part(std::string const& path, aiMesh const& source, model_nodes const& nodes, std::size_t node,
                aiAnimation const* animation, model_uvs uvs)
         : node_(node) {
@@ -86,7 +87,8 @@ public:
 private:
     mesh surface_of(std::string const& path, aiMesh const& source, model_uvs uvs) {
         mesh surface;
-        auto is_uv_usable = uvs == model_uvs::from_file && source.HasTextureCoords(0) && source.mNumUVComponents[0] >= 2;
+        auto is_uv_usable =
+            uvs == model_uvs::from_file && source.HasTextureCoords(0) && source.mNumUVComponents[0] >= 2;
         for (unsigned i = 0; i < source.mNumVertices; ++i) {
             surface.positions.push_back(to_glm(source.mVertices[i]));
             if (!is_place(surface.positions.back())) {
@@ -166,7 +168,8 @@ private:
         for (unsigned target = 0; target < source.mNumAnimMeshes; ++target) {
             auto const& morphed = *source.mAnimMeshes[target];
             auto& offsets = morph_offsets_.emplace_back(source.mNumVertices, glm::vec3(0));
-            for (unsigned i = 0; morphed.HasPositions() && i < std::min(source.mNumVertices, morphed.mNumVertices); ++i) {
+            for (unsigned i = 0; morphed.HasPositions() && i < std::min(source.mNumVertices, morphed.mNumVertices);
+                 ++i) {
                 offsets[i] = to_glm(morphed.mVertices[i]) - to_glm(source.mVertices[i]);
             }
             morph_weights_.push_back(morphed.mWeight);

@@ -18,15 +18,16 @@ struct model_object_report {
     std::string name;
     std::size_t vertices = 0;
     std::size_t triangles = 0;
-    std::size_t joints = 0;        ///< that move its vertices
+    std::size_t joints = 0; ///< that move its vertices
     std::size_t morph_targets = 0;
-    bool has_made_uvs = false;     ///< the file has none, or none that can be used, or was asked for new ones
-    std::size_t uvs_outside = 0;   ///< vertices with u or v outside [0, 1]
-    uv_overlap overlap{};          ///< over a texture of 512 x 512 texels
+    bool has_made_uvs = false;   ///< the file has none, or none that can be used, or was asked for new ones
+    std::size_t uvs_outside = 0; ///< vertices with u or v outside [0, 1]
+    uv_overlap overlap{};        ///< over a texture of 512 x 512 texels
 
     /// Share of the used texels that several places of the surface claim, in [0, 1].
     double overlapping_share() const {
-        return static_cast<double>(overlap.overlapping) / static_cast<double>(std::max<std::size_t>(overlap.covered, 1));
+        return static_cast<double>(overlap.overlapping) /
+               static_cast<double>(std::max<std::size_t>(overlap.covered, 1));
     }
 };
 
@@ -57,7 +58,8 @@ inline std::string text_of(model_object_report const& object) {
     if (object.overlapping_share() > 0.01) {
         char share[16];
         std::snprintf(share, sizeof share, "%.0f %%", 100 * object.overlapping_share());
-        text += std::string("; ") + share + " of its texels belong to several places, which will look alike (an atlas would not)";
+        text += std::string("; ") + share +
+                " of its texels belong to several places, which will look alike (an atlas would not)";
     }
     return text;
 }

@@ -82,4 +82,9 @@ inline void write_bytes(std::filesystem::path const& path, std::span<std::uint8_
     file.commit();
 }
 
+/// Writes `text` as the whole of `path`, as write_bytes does.
+inline void write_text(std::filesystem::path const& path, std::string const& text) {
+    write_bytes(path, {reinterpret_cast<std::uint8_t const*>(text.data()), text.size()});
+}
+
 } // namespace genrender::examples

@@ -47,7 +47,8 @@ struct rgb8_image {
         return {p[0], p[1], p[2]};
     }
     void set(std::size_t row, std::size_t column, rgb8 colour) {
-        std::copy(colour.begin(), colour.end(), bytes.begin() + static_cast<std::ptrdiff_t>((row * width + column) * 3));
+        std::copy(colour.begin(), colour.end(),
+                  bytes.begin() + static_cast<std::ptrdiff_t>((row * width + column) * 3));
     }
 };
 
@@ -60,8 +61,8 @@ inline void validate(rgb8_image const& image, char const* function) {
     require_extents(function, "image.bytes", std::array{image.bytes.size()}, std::array{image.grid().size() * 3});
 }
 
-/// Writes the image as PNG, whole or not at all. Throws shape_error at an image without pixels, file_error if the file cannot
-/// be written.
+/// Writes the image as PNG, whole or not at all. Throws shape_error at an image without pixels, file_error if the
+/// file cannot be written.
 inline void write_png(std::filesystem::path const& path, rgb8_image const& image) {
     validate(image, "write_png");
     output_file file(path);
@@ -103,7 +104,8 @@ inline std::uint8_t to_byte(float value) {
     return static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0f) : 0.0f)));
 }
 
-/// One frame of colour, [3, height, width] in [0, 1], values outside clamped. Throws shape_error unless there are 3 channels.
+/// One frame of colour, [3, height, width] in [0, 1], values outside clamped. Throws shape_error unless there are 3
+/// channels.
 inline rgb8_image rgb_picture(strided_view<float const, 3> rgb) {
     require_shape("rgb_picture", "rgb", rgb, {3, rgb.extent(1), rgb.extent(2)});
     rgb8_image image({rgb.extent(1), rgb.extent(2)}, {0, 0, 0});
@@ -116,8 +118,8 @@ inline rgb8_image rgb_picture(strided_view<float const, 3> rgb) {
     return image;
 }
 
-/// Every frame of UV made visible: red grows with u, green with v, blue is the object's; every second square of an 8 x 8
-/// board on the texture is darker; the background is nearly black.
+/// Every frame of UV made visible: red grows with u, green with v, blue is the object's; every second square of an 8
+/// x 8 board on the texture is darker; the background is nearly black.
 inline std::vector<rgb8_image> uv_pictures(uv_maps const& maps) {
     std::vector<rgb8_image> pictures;
     for (std::size_t frame = 0; frame < maps.frame_count(); ++frame) {
@@ -143,8 +145,8 @@ inline std::vector<rgb8_image> uv_pictures(uv_maps const& maps) {
     return pictures;
 }
 
-/// Every frame of depth made visible on one scale for all: white at the animation's nearest point, dark grey at its farthest,
-/// black on the background. Throws as sequence_inverse_depth does.
+/// Every frame of depth made visible on one scale for all: white at the animation's nearest point, dark grey at its
+/// farthest, black on the background. Throws as sequence_inverse_depth does.
 inline std::vector<rgb8_image> depth_pictures(depth_maps const& maps) {
     auto const nearness = sequence_inverse_depth(maps);
     std::vector<rgb8_image> pictures;

@@ -41,15 +41,16 @@ inline std::optional<std::pair<int, int>> corners_off_common_edge(mesh const& su
 
 } // namespace detail
 
-/// The same surface with UVs that cannot overlap: triangles 2k and 2k + 1 share one square of a grid over [0, 1]^2, as two halves
-/// of a quadrilateral where they have an edge in common, else apart. A tenth of the square is left free to its neighbours.
-/// The texture is torn at most edges and its density differs from triangle to triangle; UVs made by hand are better.
-/// Triangles must name vertices that exist.
+/// The same surface with UVs that cannot overlap: triangles 2k and 2k + 1 share one square of a grid over [0, 1]^2,
+/// as two halves of a quadrilateral where they have an edge in common, else apart. A tenth of the square is left free
+/// to its neighbours. The texture is torn at most edges and its density differs from triangle to triangle; UVs made
+/// by hand are better. Triangles must name vertices that exist.
 inline triangle_atlas make_triangle_atlas(mesh const& given) {
     auto const cells = (given.triangles.size() + 1) / 2;
     auto const side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(cells))));
     triangle_atlas atlas;
-    auto const add = [&](glm::uvec3 const& triangle, int first_corner, std::size_t cell, std::array<glm::vec2, 3> const& uvs) {
+    auto const add = [&](glm::uvec3 const& triangle, int first_corner, std::size_t cell,
+                         std::array<glm::vec2, 3> const& uvs) {
         glm::vec2 const origin(static_cast<float>(cell % side), static_cast<float>(cell / side));
         auto const first = static_cast<std::uint32_t>(atlas.source.size());
         for (int i = 0; i < 3; ++i) {

@@ -22,6 +22,7 @@
 #include <genrender/scene/uv_overlap.hpp>
 
 #include <genrender/guidance/background_mask.hpp>
+#include <genrender/guidance/cell_extents.hpp>
 #include <genrender/guidance/depth_maps.hpp>
 #include <genrender/guidance/frame_rasterizer.hpp>
 #include <genrender/guidance/rasterizer.hpp>
@@ -31,10 +32,12 @@
 #include <genrender/guidance/uv_report.hpp>
 
 #include <genrender/correspondence/correspondence_map.hpp>
+#include <genrender/correspondence/correspondence_set.hpp>
 #include <genrender/correspondence/reproject.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
 #include <genrender/correspondence/texture_projection.hpp>
+#include <genrender/correspondence/texture_resolution.hpp>
 #include <genrender/correspondence/visible_texels.hpp>
 
 #include <genrender/noise/initial_noise.hpp>
@@ -75,3 +78,13 @@
 
 #include <genrender/normalization/adain.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
+
+#include <genrender/pipeline/progress.hpp>
+#include <genrender/pipeline/render.hpp>
+#include <genrender/pipeline/render_report.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+#include <genrender/pipeline/sequence_denoiser.hpp>
+
+#include <genrender/baselines/per_frame.hpp>
+
+#include <genrender/evaluation/correspondence_error.hpp>

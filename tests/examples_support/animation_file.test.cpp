@@ -43,7 +43,8 @@ decoded_animation decode(std::filesystem::path const& path) {
     while (WebPAnimDecoderHasMoreFrames(decoder.get()) != 0) {
         std::uint8_t* pixels = nullptr;
         REQUIRE(WebPAnimDecoderGetNext(decoder.get(), &pixels, &result.end_times.emplace_back()) != 0);
-        auto& frame = result.frames.emplace_back(grid_extents{result.info.canvas_height, result.info.canvas_width}, rgb8{});
+        auto& frame =
+            result.frames.emplace_back(grid_extents{result.info.canvas_height, result.info.canvas_width}, rgb8{});
         for (std::size_t i = 0; i < frame.grid().size(); ++i) {
             std::copy_n(pixels + 4 * i, 3, frame.bytes.begin() + static_cast<std::ptrdiff_t>(3 * i));
         }
@@ -106,7 +107,8 @@ TEST_SUITE("examples_support/animation_file") {
         CHECK_THROWS_WITH_AS(write_animation(path, {}), "write_animation: frames is empty, expected at least one frame",
                              value_error);
         CHECK_THROWS_WITH_AS(write_animation(path, moving_square(1), {.frames_per_second = 0}),
-                             "write_animation: frames_per_second is 0.000000, expected above 0 and at most 1000", value_error);
+                             "write_animation: frames_per_second is 0.000000, expected above 0 and at most 1000",
+                             value_error);
         CHECK_THROWS_WITH_AS(write_animation(path, moving_square(1), {.near_lossless = 101}),
                              "write_animation: near_lossless is 101, expected 0 to 100", value_error);
         auto frames = moving_square(2);

@@ -22,7 +22,8 @@ std::vector<rgb8_image> frames(std::size_t count, grid_extents grid) {
 
 TEST_SUITE("examples_support/contact_sheet") {
     TEST_CASE("frames lie row by row with a margin around each") {
-        auto const sheet = contact_sheet(frames(5, {2, 3}), {.columns = 2, .margin = 1, .enlargement = 2, .paper = {7, 7, 7}});
+        auto const sheet =
+            contact_sheet(frames(5, {2, 3}), {.columns = 2, .margin = 1, .enlargement = 2, .paper = {7, 7, 7}});
         CHECK(sheet.grid() == grid_extents{3 * 5 + 1, 2 * 7 + 1});
         CHECK(sheet.at(0, 0) == rgb8{7, 7, 7});
         CHECK(sheet.at(1, 1) == rgb8{1, 0, 0});
@@ -40,7 +41,8 @@ TEST_SUITE("examples_support/contact_sheet") {
     }
 
     TEST_CASE("labels stand below their frames and end at their width") {
-        auto const sheet = contact_sheet(frames(2, {4, 8}), {.columns = 2, .margin = 0, .labels = {"HHH", ""}, .ink = {9, 9, 9}});
+        auto const sheet =
+            contact_sheet(frames(2, {4, 8}), {.columns = 2, .margin = 0, .labels = {"HHH", ""}, .ink = {9, 9, 9}});
         CHECK(sheet.grid() == grid_extents{13, 16});
         CHECK(sheet.at(5, 1) == rgb8{9, 9, 9}); // the left stem of H
         CHECK(sheet.at(5, 5) == rgb8{9, 9, 9}); // its right stem
@@ -66,7 +68,8 @@ TEST_SUITE("examples_support/contact_sheet") {
     }
 
     TEST_CASE("frames that do not fit each other are refused") {
-        CHECK_THROWS_WITH_AS(contact_sheet({}), "contact_sheet: frames is empty, expected at least one frame", value_error);
+        CHECK_THROWS_WITH_AS(contact_sheet({}), "contact_sheet: frames is empty, expected at least one frame",
+                             value_error);
         auto mixed = frames(2, {4, 4});
         mixed[1] = rgb8_image({4, 5}, {0, 0, 0});
         CHECK_THROWS_WITH_AS(contact_sheet(mixed), "contact_sheet: frames is [4, 5], expected [4, 4]", shape_error);

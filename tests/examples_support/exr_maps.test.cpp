@@ -174,7 +174,8 @@ TEST_SUITE("examples_support/exr_maps") {
 
     TEST_CASE("a data window beside the display window shows nothing") {
         scratch_folder const folder;
-        write_exr(folder / "0.exr", window(2, 2), window(1, 1, 5, 5), {{"u", {0}}, {"v", {0}}, {"id", {0}}, {"depth", {1}}});
+        write_exr(folder / "0.exr", window(2, 2), window(1, 1, 5, 5),
+                  {{"u", {0}}, {"v", {0}}, {"id", {0}}, {"depth", {1}}});
         auto const sequence = load_exr_sequence(folder.path());
         CHECK(sequence.notes == std::vector<std::string>{"No frame shows a surface."});
     }
@@ -210,7 +211,8 @@ TEST_SUITE("examples_support/exr_maps") {
                              file_error);
         CHECK_THROWS_WITH_AS(
             load_exr_sequence(folder / "uv_0001.PNG"),
-            ((folder / "uv_0001.PNG").string() + ": cannot be read (Not a directory), expected a folder of EXR files").c_str(),
+            ((folder / "uv_0001.PNG").string() + ": cannot be read (Not a directory), expected a folder of EXR files")
+                .c_str(),
             file_error);
     }
 
@@ -219,8 +221,9 @@ TEST_SUITE("examples_support/exr_maps") {
         auto channels = blender_frame();
         channels[0].type = Imf::UINT;
         write_blender(integers / "0001.exr", channels);
-        CHECK(refusal(integers) == "/0001.exr: channel ViewLayer.UV.U holds integers, expected 32-bit floats (quantised "
-                                   "coordinates cannot address a texture)");
+        CHECK(refusal(integers) ==
+              "/0001.exr: channel ViewLayer.UV.U holds integers, expected 32-bit floats (quantised "
+              "coordinates cannot address a texture)");
 
         scratch_folder const converted;
         std::vector<float> levels(32);
@@ -230,8 +233,9 @@ TEST_SUITE("examples_support/exr_maps") {
         std::vector<float> const ones(32, 1);
         write_exr(converted / "0.exr", window(4, 8), window(4, 8),
                   {{"u", levels}, {"v", levels}, {"id", ones}, {"depth", ones}});
-        CHECK(refusal(converted) == ": every u and v is a multiple of 1/255, expected UV that never passed through an 8-bit "
-                                    "picture (256 levels cannot address a texture)");
+        CHECK(refusal(converted) ==
+              ": every u and v is a multiple of 1/255, expected UV that never passed through an 8-bit "
+              "picture (256 levels cannot address a texture)");
     }
 
     TEST_CASE("a missing pass is named with the channels that are there") {
@@ -243,9 +247,10 @@ TEST_SUITE("examples_support/exr_maps") {
         auto channels = blender_frame();
         channels.erase(channels.begin() + 3);
         write_blender(folder / "0001.exr", channels);
-        CHECK(refusal(folder) == "/0001.exr: has the channels ViewLayer.Combined.R, ViewLayer.Depth.Z, ViewLayer.UV.A, "
-                                 "ViewLayer.UV.U, ViewLayer.UV.V, expected ViewLayer.IndexOB.X as well (the view layer's "
-                                 "Object Index pass)");
+        CHECK(refusal(folder) ==
+              "/0001.exr: has the channels ViewLayer.Combined.R, ViewLayer.Depth.Z, ViewLayer.UV.A, "
+              "ViewLayer.UV.U, ViewLayer.UV.V, expected ViewLayer.IndexOB.X as well (the view layer's "
+              "Object Index pass)");
 
         write_blender(folder / "0001.exr", {{"u", {0, 0}}, {"v", {0, 0}}, {"id", {0, 0}}});
         CHECK(refusal(folder) == "/0001.exr: has the channels id, u, v, expected depth as well");
@@ -284,13 +289,13 @@ TEST_SUITE("examples_support/exr_maps") {
         auto channels = blender_frame();
         channels[1].values[0] = std::numeric_limits<float>::quiet_NaN();
         write_blender(folder / "0001.exr", channels);
-        CHECK(refusal(folder) == "/0001.exr: at row 0, column 0 the UV is not a finite number, expected texture coordinates "
-                                 "where a surface is covered");
+        CHECK(refusal(folder) ==
+              "/0001.exr: at row 0, column 0 the UV is not a finite number, expected texture coordinates "
+              "where a surface is covered");
         channels = blender_frame();
         channels[3].values[0] = -2;
         write_blender(folder / "0001.exr", channels);
-        CHECK(refusal(folder) ==
-              "/0001.exr: at row 0, column 0 the object index is -2.000000, expected 0 to 2^24 - 1");
+        CHECK(refusal(folder) == "/0001.exr: at row 0, column 0 the object index is -2.000000, expected 0 to 2^24 - 1");
     }
 
     TEST_CASE("subsampled channels and absurd sizes are refused") {

@@ -20,7 +20,8 @@ TEST_SUITE("examples_support/exr_maps_writer") {
         auto const& depth = maps.second;
         for (auto const& options :
              {exr_write_options{.v_upwards = false}, exr_write_options{.layer = "Scene.Hero", .v_upwards = false},
-              exr_write_options{.multipart = true, .v_upwards = false}, exr_write_options{.layer = "", .v_upwards = false},
+              exr_write_options{.multipart = true, .v_upwards = false},
+              exr_write_options{.layer = "", .v_upwards = false},
               exr_write_options{.layout = exr_layout::plain, .v_upwards = false, .first_number = 9999}}) {
             scratch_folder const folder;
 

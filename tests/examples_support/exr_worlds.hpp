@@ -67,8 +67,8 @@ inline Imath::Box2i window(int height, int width, int top = 0, int left = 0) {
 
 /// A 1 x 2 Blender frame of one layer: left pixel covered (u 0.3, v 0.7, object 4, depth 2), right pixel background.
 inline std::vector<exr_test_channel> blender_frame(std::string const& layer = "ViewLayer") {
-    return {{layer + ".UV.U", {0.3f, 0}},       {layer + ".UV.V", {0.7f, 0}},          {layer + ".UV.A", {1, 0}},
-            {layer + ".IndexOB.X", {4, 0}},     {layer + ".Depth.Z", {2, 1e10f}},      {layer + ".Combined.R", {0.5f, 0.5f}}};
+    return {{layer + ".UV.U", {0.3f, 0}},   {layer + ".UV.V", {0.7f, 0}},     {layer + ".UV.A", {1, 0}},
+            {layer + ".IndexOB.X", {4, 0}}, {layer + ".Depth.Z", {2, 1e10f}}, {layer + ".Combined.R", {0.5f, 0.5f}}};
 }
 
 /// Two frames of 3 x 5 with two objects, background and coordinates that need all 24 bits.

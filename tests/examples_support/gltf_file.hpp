@@ -22,7 +22,9 @@ public:
 
     /// Adds floats as an accessor of `type` (SCALAR, VEC2, VEC3, VEC4, MAT4) and returns its number as text.
     std::string add(char const* type, std::initializer_list<float> values) {
-        auto const width = std::strcmp(type, "SCALAR") == 0 ? 1u : std::strcmp(type, "MAT4") == 0 ? 16u : unsigned(type[3] - '0');
+        auto const width = std::strcmp(type, "SCALAR") == 0 ? 1u
+                           : std::strcmp(type, "MAT4") == 0 ? 16u
+                                                            : unsigned(type[3] - '0');
         std::string bounds;
         if (width == 1 || width == 3) {
             bounds = range_text(values, width);
@@ -40,10 +42,11 @@ public:
         auto const list = [](char const* name, std::string const& elements) {
             return elements.empty() ? std::string{} : std::string(",\n\"") + name + "\": [" + elements + "]";
         };
-        return "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 0, \"scenes\": [{\"nodes\": [0]}]" + list("nodes", nodes) +
-               list("meshes", meshes) + list("skins", skins) + list("animations", animations) + list("cameras", cameras) +
-               list("accessors", accessors_) + list("bufferViews", views_) + ",\n\"buffers\": [{\"byteLength\": " +
-               std::to_string(bytes_.size()) + ", \"uri\": \"data:application/octet-stream;base64," + base64() + "\"}]}\n";
+        return "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 0, \"scenes\": [{\"nodes\": [0]}]" +
+               list("nodes", nodes) + list("meshes", meshes) + list("skins", skins) + list("animations", animations) +
+               list("cameras", cameras) + list("accessors", accessors_) + list("bufferViews", views_) +
+               ",\n\"buffers\": [{\"byteLength\": " + std::to_string(bytes_.size()) +
+               ", \"uri\": \"data:application/octet-stream;base64," + base64() + "\"}]}\n";
     }
 
 private:
@@ -67,8 +70,9 @@ private:
         auto const comma = number == "0" ? "" : ",\n";
         views_ += comma + std::string("{\"buffer\": 0, \"byteOffset\": ") + std::to_string(bytes_.size()) +
                   ", \"byteLength\": " + std::to_string(size) + "}";
-        accessors_ += comma + std::string("{\"bufferView\": ") + number + ", \"componentType\": " + std::to_string(component) +
-                      ", \"count\": " + std::to_string(count) + ", \"type\": \"" + type + "\"" + bounds + "}";
+        accessors_ += comma + std::string("{\"bufferView\": ") + number +
+                      ", \"componentType\": " + std::to_string(component) + ", \"count\": " + std::to_string(count) +
+                      ", \"type\": \"" + type + "\"" + bounds + "}";
         auto const* const first = static_cast<unsigned char const*>(data);
         bytes_.insert(bytes_.end(), first, first + size);
         bytes_.resize((bytes_.size() + 3) / 4 * 4);

@@ -56,7 +56,8 @@ TEST_SUITE("examples_support/model_nodes") {
         // The second quaternion has the opposite sign: the same rotation, the long way for a naive blend
         aiQuaternion const end(aiVector3D(0, 0, 1), quarter);
         channel.mNumRotationKeys = 2;
-        channel.mRotationKeys = new aiQuatKey[2]{{0, aiQuaternion()}, {3, aiQuaternion(-end.w, -end.x, -end.y, -end.z)}};
+        channel.mRotationKeys =
+            new aiQuatKey[2]{{0, aiQuaternion()}, {3, aiQuaternion(-end.w, -end.x, -end.y, -end.z)}};
         aiMatrix4x4 rest;
         aiMatrix4x4::Translation({7, 8, 9}, rest);
         for (double const time : {0.0, 1.0, 2.0, 3.0}) {

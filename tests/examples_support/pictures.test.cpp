@@ -39,8 +39,9 @@ TEST_SUITE("examples_support/pictures") {
         scratch_folder const folder;
         auto const file = folder.write("file", "");
         CHECK_THROWS_WITH_AS(write_png(file / "a.png", every_byte()),
-                             (file.string() + ": is no folder and cannot be made one (Not a directory), expected a place "
-                                              "that can be written")
+                             (file.string() +
+                              ": is no folder and cannot be made one (Not a directory), expected a place "
+                              "that can be written")
                                  .c_str(),
                              file_error);
         std::filesystem::create_directory(folder / "taken.png");
@@ -70,7 +71,8 @@ TEST_SUITE("examples_support/pictures") {
         auto const file = folder.write("foreign.png", "not a picture, but a text of some length");
         CHECK_THROWS_WITH_AS(
             read_png(file),
-            (file.string() + ": cannot be read as PNG (Not a PNG file), expected a whole PNG file").c_str(), file_error);
+            (file.string() + ": cannot be read as PNG (Not a PNG file), expected a whole PNG file").c_str(),
+            file_error);
         write_png(folder / "whole.png", every_byte());
         std::ifstream stream(folder / "whole.png", std::ios::binary);
         std::string const whole{std::istreambuf_iterator<char>(stream), {}};

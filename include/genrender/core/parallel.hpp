@@ -70,8 +70,12 @@ public:
         };
         std::vector<std::thread> helpers;
         helpers.reserve(workers - 1);
-        for (std::size_t i = 1; i < workers; ++i) {
-            helpers.emplace_back(work);
+        try {
+            for (std::size_t i = 1; i < workers; ++i) {
+                helpers.emplace_back(work);
+            }
+        } catch (...) {
+            // A machine out of threads is slower, not wrong: those that started share the indices.
         }
         work();
         for (auto& helper : helpers) {

@@ -61,7 +61,7 @@ constexpr std::uint32_t uniform_below(std::uint32_t bound, std::uint64_t seed, r
     return static_cast<std::uint32_t>((std::uint64_t{bits[0]} * bound + low) >> 32);
 }
 
-/// A value of N(0, 1), by the Box-Muller transform in double precision; never infinite (at most 8.58 in magnitude).
+/// A value of N(0, 1), by the Box-Muller transform in double precision; never infinite (at most 8.66 in magnitude).
 inline double normal_value(std::uint64_t seed, random_stream stream, random_address address) {
     auto const bits = random_bits(seed, stream, address);
     auto const u = (static_cast<double>((std::uint64_t{bits[0]} << 21) ^ (bits[1] >> 11)) + 0.5) * 0x1p-53;

@@ -153,10 +153,10 @@ private:
     strides_type strides_{};
 };
 
-/// A read-only view as a function parameter that leaves the deduction of `Real` to the out-parameter, so that tensors,
-/// mutable views and constant views all convert to it.
+/// A read-only view as a function parameter that leaves the deduction of `Real` and `Rank` to the out-parameter, so that
+/// tensors, mutable views and constant views all convert to it.
 template <class Real, std::size_t Rank>
-using in_view = strided_view<std::type_identity_t<Real> const, Rank>;
+using in_view = std::type_identity_t<strided_view<Real const, Rank>>;
 
 /// Throws shape_error unless the view has the expected extents.
 template <class T, std::size_t Rank>

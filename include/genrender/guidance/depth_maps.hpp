@@ -4,6 +4,7 @@
 
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
+#include <genrender/guidance/cell_extents.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,6 +57,25 @@ inline tensor<float, 3> sequence_inverse_depth(depth_maps const& maps) {
         result.data()[i] = covered[i] == 0 ? 0.0f : range > 0 ? (1 / depth[i] - farthest) / range : 1.0f;
     }
     return result;
+}
+
+/// Means of `map` [frames, height, width] over the cells of a coarser grid [frames, height, width of `grid`]: inverse depth at
+/// the size that a network's hint has. Throws value_error unless the grid divides the map.
+inline tensor<float, 3> cell_means(tensor<float, 3> const& map, grid_extents grid) {
+    auto const cell = cell_extents("cell_means", {map.shape()[1], map.shape()[2]}, grid);
+    auto means = tensor<float, 3>::from_shape({map.shape()[0], grid.height, grid.width});
+    for (std::size_t frame = 0; frame < map.shape()[0]; ++frame) {
+        for (std::size_t row = 0; row < grid.height; ++row) {
+            for (std::size_t column = 0; column < grid.width; ++column) {
+                float sum = 0;
+                for (std::size_t p = 0; p < cell.size(); ++p) {
+                    sum += map(frame, row * cell.height + p / cell.width, column * cell.width + p % cell.width);
+                }
+                means(frame, row, column) = sum / static_cast<float>(cell.size());
+            }
+        }
+    }
+    return means;
 }
 
 } // namespace genrender

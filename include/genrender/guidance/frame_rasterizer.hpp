@@ -85,10 +85,11 @@ inline void require_drawable(posed_object const& posed) {
     validate(*posed.surface, "rasterize");
 }
 
-/// Draws one triangle over what was drawn before: nearest wins, equally near goes to the lower object, then to the earlier triangle.
-inline void draw_triangle(frame_guidance_view const& to, std::vector<double>& nearest, camera_space_triangle const& corners,
-                          std::array<glm::dvec2, 3> const& uvs, object_index object, image_plane const& plane,
-                          double near_distance) {
+/// Draws one triangle over what was drawn before: nearest wins, equally near goes to the lower object, then to the
+/// earlier triangle.
+inline void draw_triangle(frame_guidance_view const& to, std::vector<double>& nearest,
+                          camera_space_triangle const& corners, std::array<glm::dvec2, 3> const& uvs,
+                          object_index object, image_plane const& plane, double near_distance) {
     auto const coverage = triangle_coverage::of(corners);
     if (!coverage) {
         return;
@@ -120,14 +121,15 @@ inline void draw_triangle(frame_guidance_view const& to, std::vector<double>& ne
 
 } // namespace detail
 
-/// Overwrites one frame with what `scene` shows: UV perspective-correct and as the meshes have it, even outside [0, 1]; depth
-/// along the viewing axis in scene units; zeros on the background. Pixels are sampled once, at their centre (no antialiasing:
-/// a mean of two UVs is a third place). Both sides of a triangle are seen; of equally near surfaces the lower object number
-/// wins, then the earlier triangle. Nothing nearer than the camera's near distance is seen, cut per pixel.
+/// Overwrites one frame with what `scene` shows: UV perspective-correct and as the meshes have it, even outside [0, 1];
+/// depth along the viewing axis in scene units; zeros on the background. Pixels are sampled once, at their centre (no
+/// antialiasing: a mean of two UVs is a third place). Both sides of a triangle are seen; of equally near surfaces the
+/// lower object number wins, then the earlier triangle. Nothing nearer than the camera's near distance is seen, cut per
+/// pixel.
 ///
-/// Throws shape_error unless all four views have the same height and width and every object has as many positions as its
-/// surface; value_error at a camera that cannot see, an object without a surface, positions that are not finite, and as
-/// validate(mesh) does.
+/// Throws shape_error unless all four views have the same height and width and every object has as many positions as
+/// its surface; value_error at a camera that cannot see, an object without a surface, positions that are not finite,
+/// and as validate(mesh) does.
 inline void rasterize_frame(frame_guidance_view const& to, posed_scene const& scene) {
     auto const& extents = to.coverage.extents();
     require_shape("rasterize", "uv", to.uv, {extents[0], extents[1], 2});
@@ -157,9 +159,10 @@ inline void rasterize_frame(frame_guidance_view const& to, posed_scene const& sc
         }
         auto const& surface = *posed.surface;
         for (auto const& t : surface.triangles) {
-            detail::draw_triangle(to, nearest, {seen[t.x], seen[t.y], seen[t.z]},
-                                  {glm::dvec2(surface.uvs[t.x]), glm::dvec2(surface.uvs[t.y]), glm::dvec2(surface.uvs[t.z])},
-                                  posed.object, plane, static_cast<double>(scene.camera.near_distance));
+            detail::draw_triangle(
+                to, nearest, {seen[t.x], seen[t.y], seen[t.z]},
+                {glm::dvec2(surface.uvs[t.x]), glm::dvec2(surface.uvs[t.y]), glm::dvec2(surface.uvs[t.z])},
+                posed.object, plane, static_cast<double>(scene.camera.near_distance));
         }
     }
 }

@@ -25,12 +25,13 @@ struct rendered_guidance {
 /// The views of one frame of `guidance`. Throws value_error if there is no such frame.
 inline frame_guidance_view frame_view(rendered_guidance& guidance, frame_index i) {
     require_value(i.value < guidance.uv.frame_count(), "frame_view", "i", i.value, "a frame of the guidance");
-    return {to_view(guidance.uv.uv)[i.value], to_view(guidance.uv.object)[i.value], to_view(guidance.uv.coverage)[i.value],
-            to_view(guidance.depth.depth)[i.value]};
+    return {to_view(guidance.uv.uv)[i.value], to_view(guidance.uv.object)[i.value],
+            to_view(guidance.uv.coverage)[i.value], to_view(guidance.depth.depth)[i.value]};
 }
 
-/// UV and depth maps of all frames of `scene` at `grid` pixels; each frame as rasterize_frame draws it. Frames run through `loop`
-/// and do not depend on its threads. Throws value_error at a grid without pixels, and as rasterize_frame does.
+/// UV and depth maps of all frames of `scene` at `grid` pixels; each frame as rasterize_frame draws it. Frames run
+/// through `loop` and do not depend on its threads. Throws value_error at a grid without pixels, and as rasterize_frame
+/// does.
 template <animation Animation, parallel_loop Loop = sequential_loop>
 rendered_guidance rasterize(Animation const& scene, grid_extents grid, Loop const& loop = {}) {
     require_value(grid.size() > 0, "rasterize", "grid", extents_text({grid.height, grid.width}), "at least one pixel");

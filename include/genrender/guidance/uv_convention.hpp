@@ -38,9 +38,9 @@ inline float inside(float coordinate, uv_outside rule) {
 
 } // namespace detail
 
-/// Rewrites the covered pixels of `uv` [frames, height, width, 2] from `convention` to the library's: v first turned, then both
-/// coordinates brought inside. Values that are not finite stay, for inspect to count. Throws shape_error unless `coverage` is
-/// [frames, height, width].
+/// Rewrites the covered pixels of `uv` [frames, height, width, 2] from `convention` to the library's: v first turned,
+/// then both coordinates brought inside. Values that are not finite stay, for inspect to count. Throws shape_error
+/// unless `coverage` is [frames, height, width].
 inline void adopt_uv(strided_view<float, 4> uv, in_view<std::uint8_t, 3> coverage, uv_convention convention) {
     auto const& extents = coverage.extents();
     require_shape("adopt_uv", "uv", uv, {extents[0], extents[1], extents[2], 2});

@@ -2,20 +2,23 @@
 // [GR alg. 1] The second way in: what a static graph takes as extra inputs and gives as extra outputs at each site.
 #pragma once
 
+#include <genrender/attention/attention_processor.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/keyframes/recorder.hpp>
 
+#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace genrender {
 
 /// The extra inputs of one run of a static graph at one place. Every member is known before the graph starts, because
-/// Alg. 1 finishes the keyframe pass before the injected pass begins.
+/// Alg. 1 finishes the keyframe pass before the injected pass begins. What it points to lives as long as the processor.
 template <class Features, class Real>
 struct feature_inputs {
     bool attends_to_stack = false;           ///< eq. 3: keys and values of all frames of the stack
@@ -43,14 +46,17 @@ feature_inputs<Features, Real> inputs_at(recorder<Features> const& pass, attenti
     return inputs;
 }
 
-/// The extra inputs of the injected pass for `frames`.
+/// The extra inputs of the injected pass for `frames`. Throws value_error if the keyframe pass ran with callbacks, which keep
+/// no f_KF.
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(injector<Features, Real> const& pass, attention_place place,
                                          std::span<frame_index const> frames) {
     feature_inputs<Features, Real> inputs;
     inputs.f_KF = pass.joined_features(place);
-    for (auto const frame : frames) {
-        inputs.left_out.push_back(pass.left_out(frame));
+    if (inputs.f_KF != nullptr) {
+        for (auto const frame : frames) {
+            inputs.left_out.push_back(pass.left_out(frame));
+        }
     }
     inputs.F_KF = pass.blended_features(place);
     if (inputs.F_KF != nullptr) {
@@ -60,10 +66,55 @@ feature_inputs<Features, Real> inputs_at(injector<Features, Real> const& pass, a
     return inputs;
 }
 
-/// Hands the graph's extra outputs f and F [frames, tokens, channels] of a place to the pass that asked for them.
+/// Hands the graph's extra outputs f and F [frames, tokens, channels] of a place to the pass that asked for them. The handles
+/// are kept until the step ends.
 template <class Features>
-void record_features(recorder<Features> const& pass, attention_place place, Features f, Features F) {
+void record_features(recorder<Features> const& pass, attention_place place, std::type_identity_t<Features> f,
+                     std::type_identity_t<Features> F) {
     pass.record(place, std::move(f), std::move(F));
 }
+
+/// Plain attention asks for no outputs: does nothing.
+template <class Features>
+void record_features(plain_attention const&, attention_place, Features const&, Features const&) {}
+
+/// The injected pass asks for no outputs: does nothing.
+template <class Features, class Real>
+void record_features(injector<Features, Real> const&, attention_place, std::type_identity_t<Features> const&,
+                     std::type_identity_t<Features> const&) {}
+
+/// Says before a static graph runs what its self-attention modules are to do, and takes their features when it has run:
+/// the contract of attention_processor without a callback. Both functions are found in the namespace of the processor.
+///
+/// expression                               | type                   | meaning
+/// -----------------------------------------|------------------------|----------------------------------------------------
+/// `inputs_at<Features, Real>(processor,`   | feature_inputs         | what the module at `place` is given beside its
+/// `    place, frames)`                     |   `<Features, Real>`   | weights, for the stack of these frames
+/// `record_features(processor, place, f, F)`| void                   | takes input and output of the module for all frames
+///                                          |                        | of the stack; called after the graph, for the places
+///                                          |                        | whose inputs say `is_recorded`
+///
+/// These the compiler cannot check, and a model owes them: the inputs of all places can be asked for before the graph starts,
+/// in any order, for different frames on several threads; a graph that honours them puts out the F that the processor returns
+/// where it is called back, up to rounding.
+/// It does not require that one type serves both forms; those of the library do.
+///
+/// See also: attention_processor, the same contract for engines that call back; plain_attention, recorder and injector, which
+/// are models.
+template <class Processor, class Features, class Real>
+concept feature_io_processor =
+    requires(Processor const& processor, attention_place place, std::span<frame_index const> frames, Features const& f) {
+        { inputs_at<Features, Real>(processor, place, frames) } -> std::same_as<feature_inputs<Features, Real>>;
+        record_features(processor, place, f, f);
+    };
+
+/// The least that a feature_io_processor is, for checking denoisers; never run. The archetype of both ways in is one, so that
+/// the concept denoiser also holds for engines that ask for a feature_io_processor.
+using feature_io_processor_archetype = attention_processor_archetype;
+template <class Features, class Real>
+feature_inputs<Features, Real> inputs_at(feature_io_processor_archetype const&, attention_place,
+                                         std::span<frame_index const>);
+template <class Features>
+void record_features(feature_io_processor_archetype const&, attention_place, Features const&, Features const&);
 
 } // namespace genrender

@@ -34,9 +34,9 @@ public:
     using features_type = host_features<Real>;
 
     /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]. Throws shape_error if f has
-    /// another number of frames. `frames`, f and `module` must outlive the call.
+    /// another number of frames. `frames`, f, `module` and `loop` must outlive the call.
     host_attention_call(attention_place place, std::span<frame_index const> frames, features_type f,
-                        Projections const& module, Loop const& loop = {})
+                        Projections const& module, Loop const& loop = default_loop())
         : place_(place), frames_(frames), f_(std::move(f)), module_(&module), loop_(&loop) {
         require_extents("host_attention_call", "f", f_.extents(),
                         std::array{frames.size(), f_.extents()[1], f_.extents()[2]});
@@ -80,6 +80,11 @@ public:
     }
 
 private:
+    static Loop const& default_loop() {
+        static Loop const loop{};
+        return loop;
+    }
+
     template <class Projection>
     features_type projected(features_type const& f, Projection const& project) const {
         auto out = features_type::allocate(f.extents());

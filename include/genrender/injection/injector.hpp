@@ -40,7 +40,8 @@ public:
              injection_settings<Real> settings)
         : bank_(&bank), keyframes_(keyframes), rows_(std::move(rows)), settings_(std::move(settings)) {}
 
-    /// F_out of eq. 6, where F_hat attends over the sources of eq. 5.
+    /// F_out of eq. 6, where F_hat attends over the sources of eq. 5. Throws value_error if the keyframe pass ran as a static
+    /// graph, which gives no K_KF.
     template <attention_call Call>
     Features operator()(Call& call) const {
         auto const frames = call.frames();
@@ -51,6 +52,7 @@ public:
         auto const V = call.value(f);
         auto sources = own_attention_sources(K, V, frames.size());
         if (kept != nullptr && settings_.pre_attention) {
+            require_value(kept->K_KF && kept->V_KF, "injector", "K_KF", "missing", "keyframes recorded by callbacks");
             for (std::size_t i = 0; i < frames.size(); ++i) {
                 sources[i] = pre_attention_sources(K, V, i, *kept->K_KF, *kept->V_KF, keyframes_.size(),
                                                    left_out(frames[i]));
@@ -65,10 +67,14 @@ public:
     }
 
     /// f_KF that frames join to their own features at a place (eq. 5); null where nothing is injected. For engines whose graph
-    /// is static.
+    /// is static. Throws value_error if the keyframe pass ran with callbacks, which keep K_KF and V_KF instead.
     Features const* joined_features(attention_place place) const {
         auto const* const kept = bank_->find(place);
-        return kept != nullptr && settings_.pre_attention && kept->f_KF ? &*kept->f_KF : nullptr;
+        if (kept == nullptr || !settings_.pre_attention) {
+            return nullptr;
+        }
+        require_value(kept->f_KF.has_value(), "injector", "f_KF", "missing", "keyframes recorded by record_features");
+        return &*kept->f_KF;
     }
 
     /// F_KF that eq. 6 mixes in at a place; null where nothing is injected.

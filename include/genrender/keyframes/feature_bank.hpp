@@ -26,7 +26,7 @@ struct keyframe_features {
 template <class Features>
 class feature_bank {
 public:
-    feature_bank(std::size_t sites, std::size_t branches) : branches_(branches), places_(sites * branches) {}
+    feature_bank(std::size_t sites, std::size_t branches) : sites_(sites), branches_(branches), places_(sites * branches) {}
 
     /// Keeps the features of a place, replacing earlier ones. Throws value_error if the place does not exist.
     void put(attention_place place, keyframe_features<Features> features) {
@@ -44,11 +44,11 @@ private:
         auto const at = place.site.value * branches_ + place.branch;
         require_value(place.branch < branches_ && at < places_.size(), "feature_bank", "place",
                       "site " + std::to_string(place.site.value) + " branch " + std::to_string(place.branch),
-                      (std::to_string(places_.size() / branches_) + " sites with " + std::to_string(branches_) + " branches")
-                          .c_str());
+                      (std::to_string(sites_) + " sites with " + std::to_string(branches_) + " branches").c_str());
         return at;
     }
 
+    std::size_t sites_;
     std::size_t branches_;
     std::vector<std::optional<keyframe_features<Features>>> places_;
 };

@@ -5,7 +5,7 @@
 #include <genrender/core/parallel.hpp>
 #include <genrender/models/controlnet.hpp>
 #include <genrender/models/network_conditioning.hpp>
-#include <genrender/models/prompt_vocabulary.hpp>
+#include <genrender/models/reference_weights.hpp>
 #include <genrender/models/unet.hpp>
 #include <genrender/sampling/classifier_free_guidance.hpp>
 #include <genrender/sampling/denoiser.hpp>
@@ -55,12 +55,8 @@ public:
     /// height and width) and a text of prompt_words. Throws as the constructor and prompt_rows do.
     static reference_network seeded(strided_view<float const, 3> inverse_depth, std::string_view prompt, std::uint64_t seed,
                                     Real guidance_scale = 2, Loop loop = {}, unet_config const& config = {}) {
-        auto unet_weights = weights<Real>::seeded(seed, "unet");
-        auto control_weights = weights<Real>::seeded(seed, "controlnet");
-        auto prompt_weights = weights<Real>::seeded(seed, "prompt");
-        prompt_vocabulary<Real> const vocabulary(prompt_weights, config.cross_attention_dim);
-        return {config, unet_weights, control_weights,
-                {depth_hint<Real>(inverse_depth, config.conditioning_channels), vocabulary(prompt), vocabulary(""), guidance_scale},
+        auto source = reference_weights<Real>::seeded(seed);
+        return {config, source.unet, source.controlnet, source.conditioning(config, inverse_depth, prompt, guidance_scale),
                 std::move(loop)};
     }
 

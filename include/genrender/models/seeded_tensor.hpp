@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: MIT
-// Random parameters under which an untrained network paints: smooth kernels, damped details, every input felt.
+// Random parameters under which the untrained reference network paints: smooth kernels, a palette, every input felt.
 #pragma once
 
 #include <genrender/core/random.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 #include <vector>
 
-// Why not He's initialisation and be done: the reference network is a function that nobody trained, and its output is shown.
-// White random kernels show white noise. Kernels that lean to the low frequencies give what an untrained convolutional network
-// gives anyway (Ulyanov et al. 2018, 'Deep Image Prior'), only sooner. The ControlNet's zero convolutions get values too: they are
-// zero before training alone, and zeros would hide the depth map.
+// Nobody trained the reference network, and yet its output is shown. White random kernels show white noise, so kernels lean to
+// the low frequencies, as an untrained convolutional network does anyway (Ulyanov et al. 2018, 'Deep Image Prior'). The rest is
+// there so that pictures answer to what they should:
+// - to the noise: the last convolution is the first one turned round, and the skip between them is passed on, so the clean estimate
+//   resembles what it is given. Sampling turns that into feedback: chance decides, smoothing spreads and the norms bound it.
+// - to the depth: the ControlNet's zero convolutions are not zero, as they are before training.
+// - to the prompt: cross-attention speaks louder than the rest.
+// The three detail bands of the output (haar.hpp) are slopes of the mean band, so that pictures have no blocks of 2 x 2 pixels.
 
 namespace genrender {
 
@@ -28,87 +32,105 @@ constexpr std::uint64_t hash_of(std::string_view text, std::uint64_t hash = 0xCB
     return hash;
 }
 
-/// How much a layer speaks, relative to unit variance: chosen by looking at the pictures.
-struct gain_rule {
-    std::string_view name;
-    float gain;
-};
-
-inline constexpr gain_rule seeded_gains[] = {
-    {"attn1.to_q.weight", 2.0f},      {"attn1.to_k.weight", 2.0f}, {"attn1.to_out.0.weight", 1.0f},
-    {"attn2.to_out.0.weight", 1.5f},  {"attn2.to_q.weight", 1.0f}, {"attn2.to_k.weight", 1.0f},
-    {"controlnet_down_blocks", 0.6f}, {"controlnet_mid_block", 0.6f},
-    {"controlnet_cond_embedding", 1.5f}, {"time_emb_proj.weight", 0.3f},
-};
-
+/// How loud a layer is, relative to outputs of unit variance for inputs of unit variance. Chosen by looking at pictures.
 inline float seeded_gain(std::string_view name) {
-    for (auto const& rule : seeded_gains) {
-        if (name.find(rule.name) != std::string_view::npos) {
-            return rule.gain;
+    struct rule {
+        std::string_view part;
+        float gain;
+    };
+    constexpr std::array rules{
+        rule{"attn1.to_q", 2.0f},        rule{"attn1.to_k", 2.0f}, // attention that picks some tokens, not the mean of all
+        rule{"attn2.to_out", 3.0f},      rule{"controlnet_cond_embedding", 1.5f},
+        rule{"time_emb_proj", 0.3f},     rule{"conv_shortcut", 0.7f},
+        rule{"conv_out.weight", 1.1f},
+    };
+    for (auto const& [part, gain] : rules) {
+        if (name.find(part) != std::string_view::npos) {
+            return gain;
         }
     }
     return 1;
 }
 
+/// The direction among the features that stands for a latent channel: a part that all share, so that colours are not all shrill, and
+/// one of its own. Features come in opposite pairs, whose rectified sum has no mean, so that no picture is bleached.
+inline float seeded_palette(std::uint64_t seed, std::size_t latent, std::size_t feature) {
+    auto const direction = [&](std::uint32_t row) {
+        return static_cast<float>(
+            normal_value(seed, random_stream::weights, {row, static_cast<std::uint32_t>(feature / 2), 0x0050414CU}));
+    };
+    return (feature % 2 == 0 ? 1.0f : -1.0f) * (0.6f * direction(0) + 0.8f * direction(static_cast<std::uint32_t>(latent) + 1));
+}
+
+/// One tap of a smooth 3x3 kernel: a binomial blur mixed with the identity.
+constexpr float smooth_tap(std::size_t row, std::size_t column, float blur) {
+    auto const binomial = (row == 1 ? 0.5f : 0.25f) * (column == 1 ? 0.5f : 0.25f);
+    return blur * binomial + (row == 1 && column == 1 ? 1 - blur : 0.0f);
+}
+
+/// One tap of what makes detail band 1, 2 or 3 of haar.hpp out of its mean band, if the picture is smooth.
+constexpr float slope_tap(std::size_t row, std::size_t column, std::size_t band) {
+    auto const across = 1 - static_cast<float>(column);
+    auto const down = 1 - static_cast<float>(row);
+    return band == 1   ? 0.5f * across * (row == 1 ? 0.5f : 0.25f)
+           : band == 2 ? 0.5f * down * (column == 1 ? 0.5f : 0.25f)
+                       : 0.05f * across * down;
+}
+
 } // namespace detail
 
-/// The elements of a random tensor [out, in, ...], row-major: N(0, gain / in) for matrices and 1x1 kernels; for 3x3 kernels nine
-/// parts of a binomial blur with a random sign and strength, and one part of white noise; 1 for the scales of norms, small
-/// numbers for biases; unit variance for embeddings of words.
+/// The elements of a random tensor [out, in, ...], row-major, that depend on its name and `network` alone beside the seed.
+/// Matrices and 1x1 kernels are N(0, gain^2 / in); 3x3 kernels are blurs of random sign and strength with a little white noise;
+/// scales of norms are 1, biases N(0, 0.01), embeddings of words N(0, 1).
 inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view network, std::string_view name,
                                         std::vector<std::size_t> const& shape) {
     std::size_t count = 1;
     for (auto const extent : shape) {
         count *= extent;
     }
-    std::vector<float> values(count);
     auto const hash = detail::hash_of(name, detail::hash_of(network));
     auto const normal = [&](std::size_t i) {
         return static_cast<float>(normal_value(seed, random_stream::weights,
                                                {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32),
                                                 static_cast<std::uint32_t>(i)}));
     };
-    static auto const P = [](int k, float d) { char n[3] = {'P', char('0' + k), 0}; auto const* v = std::getenv(n); return v ? std::strtof(v, nullptr) : d; };
-    // The first and the last convolution share these random directions, latent channel by feature channel.
-    auto const code = [&](std::size_t latent, std::size_t feature) {
-        return static_cast<float>(normal_value(seed, random_stream::weights, {static_cast<std::uint32_t>(latent), static_cast<std::uint32_t>(feature), 0xC0DEU}));
-    };
-    auto const is_last = name.starts_with("conv_out.");
+    // Of an output with the four bands of haar.hpp, the first quarter are means; elsewhere nothing asks.
     auto const is_first = name == "conv_in.weight";
-    auto const means = shape[0] / 4;
-    if (shape.size() == 1) {
+    auto const is_last = name.starts_with("conv_out.");
+    auto const means = shape.empty() || shape[0] < 4 ? std::size_t{1} : shape[0] / 4;
+
+    std::vector<float> values(count);
+    if (shape.size() <= 1) {
         for (std::size_t i = 0; i < count; ++i) {
             values[i] = !name.ends_with("bias") ? 1.0f : is_last && i >= means ? 0.0f : 0.1f * normal(i);
         }
         return values;
     }
-    auto const fan_in = name.find("embedding.weight") != std::string_view::npos ? 1 : shape[1];
-    auto const scale = detail::seeded_gain(name) / std::sqrt(static_cast<float>(fan_in));
+    auto const inputs = shape[1];
+    auto const fan_in = name.ends_with("_embedding.weight") ? 1.0f : static_cast<float>(inputs);
+    auto const scale = detail::seeded_gain(name) / std::sqrt(fan_in);
     for (std::size_t i = 0; i < count; ++i) {
         values[i] = scale * normal(i);
     }
-    if (name.ends_with("conv_shortcut.weight") && shape[1] > shape[0]) {
-        auto const skip = shape[1] - shape[0];
-        for (std::size_t i = 0; i < count; ++i) values[i] *= P(0, 0.7f);
-        for (std::size_t o = 0; o < shape[0]; ++o) {
-            values[o * shape[1] + skip + o] += P(1, 1.0f);
+    if (name.ends_with("conv_shortcut.weight") && inputs > shape[0]) {
+        // Where a skip is joined, pass the skip on: its channels come last.
+        for (std::size_t out = 0; out < shape[0]; ++out) {
+            values[out * inputs + inputs - shape[0] + out] += 1;
         }
     }
-    if (shape.size() == 4 && shape[2] == 3) {
+    if (shape.size() == 4 && shape[2] == 3 && shape[3] == 3) {
         for (std::size_t pair = 0; pair < count / 9; ++pair) {
-            auto const out = pair / shape[1];
-            auto const in = pair % shape[1];
-            auto const detail_row = is_last && out >= means;
-            auto strength = scale * (is_first ? code(in, out) : is_last && !detail_row ? code(out, in) : normal(count + pair));
-            float gain = is_first ? (in < shape[1] / 4 ? P(2, 2.0f) : P(3, 0.3f)) : is_last ? detail_row ? P(4, 0.3f) : P(5, 1.5f) : 1.3f;
-            float blur = is_first || is_last ? P(6, 0.7f) : P(7, 1.0f);
-            for (std::size_t row = 0; row < 3; ++row) {
-                for (std::size_t column = 0; column < 3; ++column) {
-                    auto const binomial = (row == 1 ? 0.5f : 0.25f) * (column == 1 ? 0.5f : 0.25f);
-                    auto const centre = row == 1 && column == 1 ? 1.0f : 0.0f;
-                    auto& value = values[pair * 9 + row * 3 + column];
-                    value = gain * (strength * (blur * binomial + (1 - blur) * centre) + P(8, 0.08f) * value);
-                }
+            auto const out = pair / inputs;
+            auto const in = pair % inputs;
+            auto const band = is_last ? out / means : 0;
+            auto const strength = scale * (is_first  ? (in < inputs / 4 ? 4.0f : 0.4f) * detail::seeded_palette(seed, in, out)
+                                           : is_last ? detail::seeded_palette(seed, out % means, in)
+                                                     : 1.3f * normal(count + pair));
+            auto const blur = is_first || is_last ? 0.5f : 1.0f;
+            for (std::size_t tap = 0; tap < 9; ++tap) {
+                auto& value = values[pair * 9 + tap];
+                value = band == 0 ? strength * detail::smooth_tap(tap / 3, tap % 3, blur) + 0.1f * value
+                                  : strength * detail::slope_tap(tap / 3, tap % 3, band);
             }
         }
     }

@@ -23,10 +23,12 @@ namespace genrender {
 template <std::floating_point Real>
 class weights {
 public:
-    /// The tensors of a safetensors file; converted as they are taken. Throws file_error as safetensors_file does.
-    static weights from_file(std::string const& path) {
+    /// The tensors of a safetensors file whose names begin with `prefix`, known by the rest of the name; converted as they are
+    /// taken. Throws file_error as safetensors_file does.
+    static weights from_file(std::string const& path, std::string prefix = "") {
         weights result;
         result.file_.emplace(path);
+        result.prefix_ = std::move(prefix);
         return result;
     }
 
@@ -44,16 +46,16 @@ public:
     std::vector<Real> take(std::string const& name, std::vector<std::size_t> const& shape) {
         taken_.insert_or_assign(name, shape);
         if (file_) {
-            auto const found = file_->entries().find(name);
+            auto const found = file_->entries().find(prefix_ + name);
             if (found == file_->entries().end()) {
-                throw file_error(file_->path() + ": there is no tensor " + name + ", expected one of shape " +
+                throw file_error(file_->path() + ": there is no tensor " + prefix_ + name + ", expected one of shape " +
                                  extents_text(shape));
             }
             if (found->second.shape != shape) {
-                throw file_error(file_->path() + ": tensor " + name + " is " + extents_text(found->second.shape) +
+                throw file_error(file_->path() + ": tensor " + found->first + " is " + extents_text(found->second.shape) +
                                  ", expected " + extents_text(shape));
             }
-            return file_->read<Real>(name);
+            return file_->template read<Real>(found->first);
         }
         auto const values = seeded_tensor(seed_, network_, name, shape);
         return {values.begin(), values.end()};
@@ -67,7 +69,8 @@ public:
         std::string surplus;
         std::size_t count = 0;
         for (auto const& [name, entry] : file_->entries()) {
-            if (!taken_.contains(name) && ++count <= 5) {
+            auto const is_ours = name.starts_with(prefix_) && !taken_.contains(name.substr(prefix_.size()));
+            if (is_ours && ++count <= 5) {
                 surplus += (count > 1 ? ", " : "") + name;
             }
         }
@@ -89,15 +92,22 @@ public:
         return count;
     }
 
-    /// Writes all tensors taken so far into a safetensors file, from which from_file gives equal ones. Seeded tensors
-    /// are floats, whatever Real is, so that nothing is lost. Throws file_error if the file cannot be written.
-    void save(std::string const& path, safetensors_storage storage = safetensors_storage::f32) const {
-        std::map<std::string, std::vector<float>> values;
-        std::map<std::string, safetensors_source> sources;
+    /// All tensors taken so far by name. Seeded tensors are floats, whatever Real is, so that nothing is lost.
+    std::map<std::string, std::vector<float>> values() const {
+        std::map<std::string, std::vector<float>> result;
         for (auto const& [name, shape] : taken_) {
-            auto const& kept = values[name] =
-                file_ ? file_->template read<float>(name) : seeded_tensor(seed_, network_, name, shape);
-            sources[name] = {shape, kept};
+            result[name] = file_ ? file_->template read<float>(prefix_ + name) : seeded_tensor(seed_, network_, name, shape);
+        }
+        return result;
+    }
+
+    /// Writes all tensors taken so far into a safetensors file, from which from_file gives equal ones. Throws file_error if
+    /// the file cannot be written.
+    void save(std::string const& path, safetensors_storage storage = safetensors_storage::f32) const {
+        auto const tensors = values();
+        std::map<std::string, safetensors_source> sources;
+        for (auto const& [name, elements] : tensors) {
+            sources[name] = {taken_.at(name), elements};
         }
         write_safetensors(path, sources, storage);
     }
@@ -106,6 +116,7 @@ private:
     weights() = default;
 
     std::optional<safetensors_file> file_;
+    std::string prefix_;
     std::uint64_t seed_ = 0;
     std::string network_;
     std::map<std::string, std::vector<std::size_t>> taken_;

@@ -14,11 +14,12 @@ namespace genrender {
 struct noise_texture {
     std::uint64_t seed = 0;
 
-    /// The value of N(0, 1) at a texel and channel.
+    /// The value of N(0, 1) at a texel and channel, for rows and columns below 2^20 and channels below 2^24.
     double operator()(texel const& t, std::uint32_t channel) const {
-        // Rows and columns of a texture stay below 2^20 and objects below 2^12 in every address, so nothing meets.
+        // Rows and columns stay below 2^20 and channels below 2^24, so the object's 32 bits fill what is left of the address.
+        auto const object = t.object.value;
         return normal_value(seed, random_stream::texture_noise,
-                            {t.row | t.object.value << 20, t.column | (t.object.value >> 12) << 20, channel});
+                            {t.row | object << 20, t.column | (object >> 12) << 20, channel | (object >> 24) << 24});
     }
 };
 

@@ -22,10 +22,9 @@ void adain(strided_view<Real, 3> z, channel_statistics<std::type_identity_t<Real
     require_extents("adain", "to", std::array{to.mean.size()}, std::array{z.extent(0)});
     for (std::size_t c = 0; c < z.extent(0); ++c) {
         auto const scale = to.deviation[c] / from.deviation[c];
-        auto const shift = to.mean[c] - from.mean[c] * scale;
         for (std::size_t row = 0; row < z.extent(1); ++row) {
             for (std::size_t column = 0; column < z.extent(2); ++column) {
-                z(c, row, column) = z(c, row, column) * scale + shift;
+                z(c, row, column) = (z(c, row, column) - from.mean[c]) * scale + to.mean[c];
             }
         }
     }

@@ -6,6 +6,7 @@
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,6 +45,8 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
     auto const N = UV.frame_count();
     auto const grid = grid_extents(phi.latent_grid());
 
+    auto const start = std::chrono::steady_clock::now();
+
     // z_UV ~ N(0, I); z = z_T = sigma_T pi_UV(z_UV)
     auto z = latents<Real>::from_shape({N, phi.latent_channels(), grid.height, grid.width});
     std::vector<frame_index> frames;
@@ -63,6 +66,8 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
             }
         }
     }
+
+    report.add_seconds(0, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
     // for t = T, ..., 1: keyframes, features, blending, injection, normalisation: see sequence_denoiser
     auto const keyframes = settings.keyframes.drawing == keyframe_drawing::fixed ? settings.keyframes.frames.size()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3] The concept of an animated scene: what the camera sees and where every surface is, for any frame by its number.
+// [GR sec. 3] The concept of an animated scene: what the camera sees and where every surface is, frame by frame.
 #pragma once
 
 #include <genrender/core/index.hpp>
@@ -17,7 +17,8 @@
 
 namespace genrender {
 
-/// One object in one frame. Its triangles and UVs are shared with every other frame; only positions are the frame's own.
+/// One object in one frame. Its triangles and UVs are shared with every other frame; only positions are the frame's
+/// own.
 struct posed_object {
     object_index object;
     std::shared_ptr<mesh const> surface; ///< triangles and UVs; its positions are the rest pose
@@ -51,10 +52,10 @@ inline posed_object pose(object_index object, std::shared_ptr<mesh const> surfac
 /// `scene.frame_count()` | convertible to `std::size_t`  | number of frames
 /// `scene.frame(i)`      | convertible to `posed_scene`  | frame i, for `i.value < scene.frame_count()`
 ///
-/// These the compiler cannot check, and a model owes them: frame(i) depends on i alone, whatever was asked before, and may be
-/// called by several threads at once; an object number names the same surface, with the same UVs and triangles, in every
-/// frame that shows it (this is what a point on a texture keeps its appearance by); no two objects of a frame share a number.
-/// See also: rasterize, which turns an animation into guidance maps.
+/// These the compiler cannot check, and a model owes them: frame(i) depends on i alone, whatever was asked before, and
+/// may be called by several threads at once; an object number names the same surface, with the same UVs and triangles,
+/// in every frame that shows it (this is what a point on a texture keeps its appearance by); no two objects of a frame
+/// share a number. See also: rasterize, which turns an animation into guidance maps.
 template <class Animation>
 concept animation = requires(Animation const& scene, frame_index i) {
     { scene.frame_count() } -> std::convertible_to<std::size_t>;

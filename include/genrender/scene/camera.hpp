@@ -20,13 +20,13 @@ namespace genrender {
 
 /// A pinhole camera with square pixels. Camera space is right-handed: x right, y up, the view along -z.
 struct camera {
-    glm::mat4 view{1};            ///< world space to camera space, rigid
-    float vertical_fov = 0.7f;    ///< angle between the bottom and the top of the image, radians, in (0, pi)
-    float near_distance = 0.05f;  ///< what is nearer than this along the view is not seen; > 0, scene units
+    glm::mat4 view{1};           ///< world space to camera space, rigid
+    float vertical_fov = 0.7f;   ///< angle between the bottom and the top of the image, radians, in (0, pi)
+    float near_distance = 0.05f; ///< what is nearer than this along the view is not seen; > 0, scene units
 };
 
-/// Throws value_error if the camera cannot see: a view that is not finite, an angle outside (0, pi), a near distance that is
-/// not finite and > 0. `function` begins the text.
+/// Throws value_error if the camera cannot see: a view that is not finite, an angle outside (0, pi), a near distance
+/// that is not finite and > 0. `function` begins the text.
 inline void validate(camera const& eye, char const* function = "validate") {
     auto finite = true;
     for (int column = 0; column < 4; ++column) {
@@ -41,13 +41,13 @@ inline void validate(camera const& eye, char const* function = "validate") {
                   eye.near_distance, "a finite distance above 0");
 }
 
-/// The camera at `position` that looks at `target` with `up` upwards in the image. Throws value_error if the view has no
-/// direction (`target` at `position`) or lies along `up`.
+/// The camera at `position` that looks at `target` with `up` upwards in the image. Throws value_error if the view has
+/// no direction (`target` at `position`) or lies along `up`.
 inline camera look_at(glm::vec3 position, glm::vec3 target, float vertical_fov, glm::vec3 up = {0, 1, 0}) {
     auto const direction = target - position;
     require_value(glm::length(direction) > 0, "look_at", "target", "the camera's position", "another point");
-    require_value(glm::length(glm::cross(direction, up)) > 1e-6f * glm::length(direction) * glm::length(up), "look_at", "up",
-                  "along the view", "another direction");
+    require_value(glm::length(glm::cross(direction, up)) > 1e-6f * glm::length(direction) * glm::length(up), "look_at",
+                  "up", "along the view", "another direction");
     camera eye;
     eye.view = glm::lookAt(position, target, up);
     eye.vertical_fov = vertical_fov;
@@ -55,8 +55,8 @@ inline camera look_at(glm::vec3 position, glm::vec3 target, float vertical_fov, 
     return eye;
 }
 
-/// The nearest camera that looks along `direction` at the middle of `box` and sees the whole sphere around the box in an image
-/// of `aspect` = width / height. Throws value_error at a box of one point, and as look_at does.
+/// The nearest camera that looks along `direction` at the middle of `box` and sees the whole sphere around the box in
+/// an image of `aspect` = width / height. Throws value_error at a box of one point, and as look_at does.
 inline camera fit_camera(bounds const& box, glm::vec3 direction, float vertical_fov, float aspect) {
     require_value(box.radius() > 0, "fit_camera", "box", "a single point", "an extent above 0");
     require_value(aspect > 0 && std::isfinite(aspect), "fit_camera", "aspect", aspect, "width / height above 0");
@@ -71,18 +71,16 @@ inline camera fit_camera(bounds const& box, glm::vec3 direction, float vertical_
 }
 
 /// The camera's position in world space.
-inline glm::vec3 position_of(camera const& eye) {
-    return glm::vec3(glm::inverse(eye.view)[3]);
-}
+inline glm::vec3 position_of(camera const& eye) { return glm::vec3(glm::inverse(eye.view)[3]); }
 
-/// The plane one unit in front of a camera, and where each pixel's centre lies on it: x to the right, y up. Point (x, y) is
-/// seen along (x, y, -1) in camera space, whose multiple by the depth is the point seen.
+/// The plane one unit in front of a camera, and where each pixel's centre lies on it: x to the right, y up. Point (x,
+/// y) is seen along (x, y, -1) in camera space, whose multiple by the depth is the point seen.
 class image_plane {
 public:
     /// The plane of an image of `grid` pixels, row 0 on top.
     image_plane(camera const& eye, grid_extents grid)
-        : half_height_(std::tan(static_cast<double>(eye.vertical_fov) * 0.5)), height_(static_cast<double>(grid.height)),
-          width_(static_cast<double>(grid.width)) {}
+        : half_height_(std::tan(static_cast<double>(eye.vertical_fov) * 0.5)),
+          height_(static_cast<double>(grid.height)), width_(static_cast<double>(grid.width)) {}
 
     /// The centre of the pixel.
     glm::dvec2 centre_of(pixel p) const { return {x_of(p.column + 0.5), y_of(p.row + 0.5)}; }

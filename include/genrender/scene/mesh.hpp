@@ -19,21 +19,17 @@ namespace genrender {
 /// Vertices and the triangles between them. Each vertex has one (u, v); a texture seam is two vertices at one position.
 /// Triangles are seen from both sides, so their winding carries no meaning for the guidance maps.
 struct mesh {
-    std::vector<glm::vec3> positions;  ///< in the object's own space, scene units
-    std::vector<glm::vec3> normals;    ///< unit length, one a vertex; empty if the mesh has none
-    std::vector<glm::vec2> uvs;        ///< (u, v), one a vertex; (0, 0) is the first texel's corner, [0, 1]^2 is the texture
+    std::vector<glm::vec3> positions; ///< in the object's own space, scene units
+    std::vector<glm::vec3> normals;   ///< unit length, one a vertex; empty if the mesh has none
+    std::vector<glm::vec2> uvs; ///< (u, v), one a vertex; (0, 0) is the first texel's corner, [0, 1]^2 is the texture
     std::vector<glm::uvec3> triangles; ///< three vertex numbers each
 };
 
 namespace detail {
 
-inline bool is_finite(glm::vec2 p) {
-    return std::isfinite(p.x) && std::isfinite(p.y);
-}
+inline bool is_finite(glm::vec2 p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
-inline bool is_finite(glm::vec3 p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
+inline bool is_finite(glm::vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Throws value_error `function: name[i] is not finite, expected finite coordinates` at the first such element.
 template <class Vector>
@@ -48,9 +44,9 @@ void require_finite(char const* function, std::string const& name, std::span<Vec
 
 } // namespace detail
 
-/// Returns if the mesh can be drawn. Throws shape_error unless there is one UV a position, and one normal a position or none;
-/// value_error at the first position, normal or UV that is not finite and the first triangle that names a vertex that does
-/// not exist. `function` begins the text.
+/// Returns if the mesh can be drawn. Throws shape_error unless there is one UV a position, and one normal a position or
+/// none; value_error at the first position, normal or UV that is not finite and the first triangle that names a vertex
+/// that does not exist. `function` begins the text.
 inline void validate(mesh const& surface, char const* function = "validate") {
     auto const vertices = surface.positions.size();
     require_extents(function, "mesh.uvs", std::array{surface.uvs.size()}, std::array{vertices});
@@ -72,7 +68,8 @@ inline void validate(mesh const& surface, char const* function = "validate") {
 
 /// Appends a copy of `part`: one surface whose charts keep their UVs. Normals stay only if both meshes have them.
 inline void append(mesh& whole, mesh const& part) {
-    auto const keeps_normals = whole.normals.size() == whole.positions.size() && part.normals.size() == part.positions.size();
+    auto const keeps_normals =
+        whole.normals.size() == whole.positions.size() && part.normals.size() == part.positions.size();
     auto const first = static_cast<glm::uint>(whole.positions.size());
     whole.positions.insert(whole.positions.end(), part.positions.begin(), part.positions.end());
     whole.uvs.insert(whole.uvs.end(), part.uvs.begin(), part.uvs.end());

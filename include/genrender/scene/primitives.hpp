@@ -40,8 +40,9 @@ inline void append_grid_triangles(mesh& surface, std::uint32_t first, std::uint3
 
 } // namespace detail
 
-/// A rectangle in the plane y = 0 around the origin, `size` = extents along x and z. u grows along +x, v along +z, so the texture
-/// stands upright to an eye that looks along -z from above. Throws value_error at sizes not above 0 or no segments.
+/// A rectangle in the plane y = 0 around the origin, `size` = extents along x and z. u grows along +x, v along +z, so
+/// the texture stands upright to an eye that looks along -z from above. Throws value_error at sizes not above 0 or no
+/// segments.
 inline mesh make_plane(glm::vec2 size, std::uint32_t segments = 1) {
     detail::require_above_zero("make_plane", "size.x", size.x);
     detail::require_above_zero("make_plane", "size.y", size.y);
@@ -59,8 +60,8 @@ inline mesh make_plane(glm::vec2 size, std::uint32_t segments = 1) {
     return surface;
 }
 
-/// A disk in the plane y = 0 around the origin. Its UVs are the plane's: u along +x, v along +z, the rim touches the borders of
-/// [0, 1]^2. Throws value_error at a radius not above 0 or fewer than 3 segments.
+/// A disk in the plane y = 0 around the origin. Its UVs are the plane's: u along +x, v along +z, the rim touches the
+/// borders of [0, 1]^2. Throws value_error at a radius not above 0 or fewer than 3 segments.
 inline mesh make_disk(float radius, std::uint32_t segments = 64) {
     detail::require_above_zero("make_disk", "radius", radius);
     require_value(segments > 2, "make_disk", "segments", segments, "at least 3");
@@ -72,19 +73,21 @@ inline mesh make_disk(float radius, std::uint32_t segments = 64) {
         auto const rim = glm::vec2(std::cos(angle), std::sin(angle));
         surface.positions.push_back({rim.x * radius, 0, rim.y * radius});
         surface.uvs.push_back(rim * 0.5f + 0.5f);
-        surface.triangles.push_back({0, i + 1, (i + 1) % segments + 1});
+        surface.triangles.push_back({0, (i + 1) % segments + 1, i + 1});
     }
     surface.normals.assign(surface.positions.size(), {0, 1, 0});
     return surface;
 }
 
-/// A box around the origin, `size` = its edges along x, y and z. Each face is a chart of its own in a 3 x 2 atlas with a margin
-/// of 1/32 of a cell on each side: +x -x +y in the upper row, -y +z -z in the lower. Throws value_error at sizes not above 0.
+/// A box around the origin, `size` = its edges along x, y and z. Each face is a chart of its own in a 3 x 2 atlas with
+/// a margin of 1/32 of a cell on each side: +x -x +y in the upper row, -y +z -z in the lower. Throws value_error at
+/// sizes not above 0.
 inline mesh make_box(glm::vec3 size) {
     mesh surface;
     for (int face = 0; face < 6; ++face) {
         auto const axis = face / 2;
-        detail::require_above_zero("make_box", std::array{"size.x", "size.y", "size.z"}[static_cast<std::size_t>(axis)], size[axis]);
+        detail::require_above_zero("make_box", std::array{"size.x", "size.y", "size.z"}[static_cast<std::size_t>(axis)],
+                                   size[axis]);
         glm::vec3 normal{0}, along_u{0}, along_v{0};
         normal[axis] = face % 2 == 0 ? 1.0f : -1.0f;
         // Sides have v downwards in space as in the texture; the lid and the floor have v along z as the plane has.
@@ -95,7 +98,8 @@ inline mesh make_box(glm::vec3 size) {
         auto const first = static_cast<std::uint32_t>(surface.positions.size());
         for (int corner = 0; corner < 4; ++corner) {
             auto const place = glm::vec2(corner % 2, corner / 2);
-            surface.positions.push_back((normal + along_u * (2 * place.x - 1) + along_v * (2 * place.y - 1)) * size * 0.5f);
+            surface.positions.push_back((normal + along_u * (2 * place.x - 1) + along_v * (2 * place.y - 1)) * size *
+                                        0.5f);
             surface.normals.push_back(normal);
             surface.uvs.push_back(cell_corner + cell * (1.0f / 32 + place * (30.0f / 32)));
         }
@@ -104,10 +108,11 @@ inline mesh make_box(glm::vec3 size) {
     return surface;
 }
 
-/// The surface that `profile` sweeps around the y axis. A profile point is (distance from the axis, y), from the top to the
-/// bottom. u is the angle from +z towards +x over a whole turn, v the way along the profile over its length; the seam is at +z.
-/// Where the profile touches the axis, triangles meet in a point with one vertex each. Throws value_error at fewer than two
-/// profile points, two neighbours at one place, a negative distance, coordinates that are not finite, or fewer than 3 segments.
+/// The surface that `profile` sweeps around the y axis. A profile point is (distance from the axis, y), from the top to
+/// the bottom. u is the angle from +z towards +x over a whole turn, v the way along the profile over its length; the
+/// seam is at +z. Where the profile touches the axis, triangles meet in a point with one vertex each. Throws
+/// value_error at fewer than two profile points, two neighbours at one place, a negative distance, coordinates that are
+/// not finite, or fewer than 3 segments.
 inline mesh revolve(std::span<glm::vec2 const> profile, std::uint32_t segments) {
     require_value(profile.size() > 1, "revolve", "profile", profile.size(), "at least two points");
     require_value(segments > 2, "revolve", "segments", segments, "at least 3");
@@ -130,14 +135,17 @@ inline mesh revolve(std::span<glm::vec2 const> profile, std::uint32_t segments) 
     for (std::size_t i = 0; i < profile.size(); ++i) {
         // A point on the axis stands in the middle of its triangle's side of the chart.
         auto const shift = profile[i].x > 0 ? 0.0f : 0.5f;
-        auto const side = profile[i].x > 0 && glm::length(normal[i]) > 0 ? glm::normalize(normal[i]) : glm::vec2(0, i == 0 ? 1 : -1);
+        auto const side =
+            profile[i].x > 0 && glm::length(normal[i]) > 0 ? glm::normalize(normal[i]) : glm::vec2(0, i == 0 ? 1 : -1);
         for (std::uint32_t k = 0; k <= segments; ++k) {
             // Whole turns end exactly where they began, so that the seam has no gap.
-            auto const angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k % segments) / static_cast<float>(segments);
+            auto const angle =
+                2 * std::numbers::pi_v<float> * static_cast<float>(k % segments) / static_cast<float>(segments);
             auto const around = glm::vec2(std::sin(angle), std::cos(angle));
             surface.positions.push_back({profile[i].x * around.x, profile[i].y, profile[i].x * around.y});
             surface.normals.push_back({side.x * around.x, side.y, side.x * around.y});
-            surface.uvs.push_back({std::min((static_cast<float>(k) + shift) / static_cast<float>(segments), 1.0f), way[i] / way.back()});
+            surface.uvs.push_back(
+                {std::min((static_cast<float>(k) + shift) / static_cast<float>(segments), 1.0f), way[i] / way.back()});
         }
     }
     for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
@@ -155,8 +163,9 @@ inline mesh revolve(std::span<glm::vec2 const> profile, std::uint32_t segments) 
     return surface;
 }
 
-/// A sphere around the origin: revolve's UVs, so u = longitude from +z towards +x over a turn, v = angle from the +y pole over
-/// pi. `segments` around, half as many from pole to pole. Throws value_error at a radius not above 0 or fewer than 4 segments.
+/// A sphere around the origin: revolve's UVs, so u = longitude from +z towards +x over a turn, v = angle from the +y
+/// pole over pi. `segments` around, half as many from pole to pole. Throws value_error at a radius not above 0 or fewer
+/// than 4 segments.
 inline mesh make_sphere(float radius, std::uint32_t segments = 32) {
     detail::require_above_zero("make_sphere", "radius", radius);
     require_value(segments > 3, "make_sphere", "segments", segments, "at least 4");
@@ -169,8 +178,8 @@ inline mesh make_sphere(float radius, std::uint32_t segments = 32) {
     return revolve(profile, segments);
 }
 
-/// A capsule around the origin along y, with half spheres beyond a side of length `length`: revolve's UVs. Throws value_error at
-/// a radius or length not above 0 or fewer than 4 segments.
+/// A capsule around the origin along y, with half spheres beyond a side of length `length`: revolve's UVs. Throws
+/// value_error at a radius or length not above 0 or fewer than 4 segments.
 inline mesh make_capsule(float radius, float length, std::uint32_t segments = 32) {
     detail::require_above_zero("make_capsule", "radius", radius);
     detail::require_above_zero("make_capsule", "length", length);
@@ -187,12 +196,14 @@ inline mesh make_capsule(float radius, float length, std::uint32_t segments = 32
     return revolve(upper, segments);
 }
 
-/// A closed cylinder around the origin along y: revolve's UVs, lids included. Throws value_error at a radius or height not
-/// above 0 or fewer than 3 segments.
+/// A closed cylinder around the origin along y: revolve's UVs, lids included. Throws value_error at a radius or height
+/// not above 0 or fewer than 3 segments.
 inline mesh make_cylinder(float radius, float height, std::uint32_t segments = 32) {
     detail::require_above_zero("make_cylinder", "radius", radius);
     detail::require_above_zero("make_cylinder", "height", height);
-    return revolve(std::array<glm::vec2, 4>{{{0, height / 2}, {radius, height / 2}, {radius, -height / 2}, {0, -height / 2}}}, segments);
+    return revolve(
+        std::array<glm::vec2, 4>{{{0, height / 2}, {radius, height / 2}, {radius, -height / 2}, {0, -height / 2}}},
+        segments);
 }
 
 } // namespace genrender

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Linear blend skinning: vertices that follow the joints of a skeleton (Magnenat-Thalmann et al., Graphics Interface 1988).
+// Linear blend skinning: vertices that follow the joints of a skeleton (Magnenat-Thalmann et al., 1988).
 #pragma once
 
 #include <genrender/core/error.hpp>
@@ -34,8 +34,8 @@ struct skeleton {
     std::size_t joint_count() const { return parents.size(); }
 };
 
-/// Each joint's space to the skeleton's, from each joint's space to its parent's. Throws shape_error unless there is one
-/// transform a joint, value_error at a joint that does not come after its parent.
+/// Each joint's space to the skeleton's, from each joint's space to its parent's. Throws shape_error unless there is
+/// one transform a joint, value_error at a joint that does not come after its parent.
 inline std::vector<glm::mat4> global_transforms(skeleton const& bones, std::span<glm::mat4 const> local) {
     require_extents("global_transforms", "local", std::array{local.size()}, std::array{bones.joint_count()});
     std::vector<glm::mat4> global;
@@ -51,7 +51,8 @@ inline std::vector<glm::mat4> global_transforms(skeleton const& bones, std::span
     return global;
 }
 
-/// What takes the rest pose back to each joint's own space: the inverse of the rest pose's global transforms. Throws as they do.
+/// What takes the rest pose back to each joint's own space: the inverse of the rest pose's global transforms. Throws as
+/// they do.
 inline std::vector<glm::mat4> inverse_bind(skeleton const& bones) {
     auto transforms = global_transforms(bones, bones.rest);
     for (auto& transform : transforms) {
@@ -60,8 +61,8 @@ inline std::vector<glm::mat4> inverse_bind(skeleton const& bones) {
     return transforms;
 }
 
-/// The weights of each vertex divided by their sum. Throws value_error at a weight that is negative or not finite, and at a
-/// vertex whose weights sum to 0.
+/// The weights of each vertex divided by their sum. Throws value_error at a weight that is negative or not finite, and
+/// at a vertex whose weights sum to 0.
 inline std::vector<joint_weights> normalized(std::vector<joint_weights> vertices) {
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         auto& weights = vertices[i].weights;
@@ -82,10 +83,10 @@ inline std::vector<joint_weights> normalized(std::vector<joint_weights> vertices
     return vertices;
 }
 
-/// Posed positions p' = sum_j w_j G_j B_j p, one for each of `rest`: B the inverse bind, G the joints' global transforms in this
-/// pose. A vertex of one joint moves rigidly with it; in the rest pose nothing moves. Throws shape_error unless there are
-/// weights for each vertex and as many transforms as inverse binds; value_error at a joint that does not exist and at weights
-/// that do not sum to 1 within 0.001.
+/// Posed positions p' = sum_j w_j G_j B_j p, one for each of `rest`: B the inverse bind, G the joints' global
+/// transforms in this pose. A vertex of one joint moves rigidly with it; in the rest pose nothing moves. Throws
+/// shape_error unless there are weights for each vertex and as many transforms as inverse binds; value_error at a joint
+/// that does not exist and at weights that do not sum to 1 within 0.001.
 inline std::vector<glm::vec3> skin(std::span<glm::vec3 const> rest, std::span<joint_weights const> weights,
                                    std::span<glm::mat4 const> global, std::span<glm::mat4 const> bind) {
     require_extents("skin", "weights", std::array{weights.size()}, std::array{rest.size()});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which points a triangle covers as seen by a pinhole (Olano & Greer, 'Triangle Scan Conversion using 2D Homogeneous Coordinates', 1997).
+// Which points a triangle covers as seen through a pinhole (Olano & Greer, Graphics Hardware 1997).
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -14,12 +14,13 @@
 
 namespace genrender {
 
-/// A triangle in camera space, ready to say which points (x, y) of the plane z = -1 see it. Works in homogeneous coordinates: a
-/// triangle may reach behind the camera without being cut, and the weights are perspective-correct as they come.
+/// A triangle in camera space, ready to say which points (x, y) of the plane z = -1 see it. Works in homogeneous
+/// coordinates: a triangle may reach behind the camera without being cut, and the weights are perspective-correct as
+/// they come.
 ///
-/// Two triangles that share an edge and lie on its two sides never both cover a point and never leave one between them: the
-/// edge's line is computed once, in an order that both agree on, and a point exactly on it belongs to the triangle whose top
-/// or left edge it is.
+/// Two triangles that share an edge and lie on its two sides never both cover a point and never leave one between them:
+/// the edge's line is computed once, in an order that both agree on, and a point exactly on it belongs to the triangle
+/// whose top or left edge it is.
 class triangle_coverage {
 public:
     /// Nothing if the triangle has no area to the eye: degenerate, or its plane goes through the eye.
@@ -38,8 +39,8 @@ public:
         return coverage;
     }
 
-    /// The barycentric weights (sum 1, each in [0, 1]) of the triangle's point that is seen through (x, y); nothing if the
-    /// triangle is not seen there, in front of the eye.
+    /// The barycentric weights (sum 1, each in [0, 1]) of the triangle's point that is seen through (x, y); nothing if
+    /// the triangle is not seen there, in front of the eye.
     std::optional<glm::dvec3> at(glm::dvec2 p) const {
         glm::dvec3 e;
         for (std::size_t i = 0; i < 3; ++i) {

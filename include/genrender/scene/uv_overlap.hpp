@@ -24,8 +24,8 @@ struct uv_overlap {
     std::size_t overlapping = 0; ///< by more than one: two places of the surface would share their appearance
 };
 
-/// Counts over a texture of `resolution` x `resolution` texels. UVs outside [0, 1]^2 fall on no texel. Throws value_error at a
-/// resolution of 0 and as validate(mesh) does.
+/// Counts over a texture of `resolution` x `resolution` texels. UVs outside [0, 1]^2 fall on no texel. Throws
+/// value_error at a resolution of 0 and as validate(mesh) does.
 inline uv_overlap count_uv_overlap(mesh const& surface, std::size_t resolution) {
     require_value(resolution > 0, "count_uv_overlap", "resolution", resolution, "at least 1");
     validate(surface, "count_uv_overlap");

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1] The program that does it all: an animated scene in, a stylised animation out.
+#include "support/guidance_source.hpp"
+#include "support/progress_line.hpp"
+#include "support/render_options.hpp"
+#include "support/render_output.hpp"
+#include "support/run_report.hpp"
+
+#include <genrender/models/reference_network.hpp>
+#include <genrender/models/reference_weights.hpp>
+#include <genrender/pipeline/render.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+using namespace genrender;
+using namespace genrender::examples;
+
+namespace {
+
+/// The user's denoiser; here the reference network, told the prompt and the depth of the whole animation.
+reference_network<float, threaded_loop> make_denoiser(render_options const& options, guidance_source const& source,
+                                                      threaded_loop const& loop) {
+    unet_config const config;
+    auto weights = options.weights.empty() ? reference_weights<float>::seeded(options.seed)
+                                           : reference_weights<float>::from_file(options.weights.string());
+    auto const hint = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
+    return {config, weights.unet, weights.controlnet, weights.conditioning(config, to_view(hint), options.prompt), loop};
+}
+
+void run(render_options const& options, guidance_source const& source, threaded_loop const& loop, stopwatch const& total) {
+    auto const phi = make_denoiser(options, source, loop);
+
+    render_report report;
+    stopwatch const rendering;
+    auto const z = render(phi, to_uv_view(source.guidance.uv), options.settings, report, progress_line(options.is_quiet), loop);
+    auto const rendering_seconds = rendering.seconds();
+
+    auto const images = decoded(z);
+    std::vector<rgb8_image> frames;
+    for (std::size_t i = 0; i < images.shape()[0]; ++i) {
+        frames.push_back(rgb_picture(to_view(images)[i]));
+    }
+    write_pictures(options.out, source.guidance, frames);
+    auto const name = std::string(options.is_per_frame ? "per frame" : "ours");
+    if (!options.beside.empty()) {
+        write_comparison(options.out, options.beside, "before", frames, name);
+    }
+    auto json = report_of(options, source, report, images);
+    json["seconds"] = seconds_of(report, total.seconds(), rendering_seconds);
+    write_text(options.out / "report.json", json.dump(2) + "\n");
+}
+
+/// Prints a sentence and gives the exit code.
+int fail(int code, std::exception const& error) {
+    std::cerr << "generative_rendering: " << error.what() << "\n";
+    return code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    stopwatch const total;
+    render_options options;
+    guidance_source source;
+    threaded_loop loop;
+    // Everything that can be wrong with the arguments shows before the first step.
+    try {
+        options = parse_render_options(argc, argv);
+        loop = threaded_loop(options.threads);
+        prompt_rows(options.prompt);
+        make_folder(options.out);
+        source = load_guidance(options, loop);
+        auto const frame_count = source.guidance.uv.frame_count();
+        options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
+        require_render_settings(options.settings, frame_count);
+        require_latent_grid(unet_config{}, {source.image.height / 2, source.image.width / 2});
+    } catch (no_run const& none) {
+        return none.exit_code;
+    } catch (std::invalid_argument const& error) {
+        return fail(2, error);
+    } catch (std::exception const& error) {
+        return fail(1, error);
+    }
+    for (auto const& note : source.notes) {
+        std::cerr << "note: " << note << "\n";
+    }
+    try {
+        run(options, source, loop, total);
+    } catch (std::exception const& error) {
+        return fail(1, error);
+    }
+    std::cout << "animation:     " << (options.out / "animation.webp").string() << "\n"
+              << "contact sheet: " << (options.out / "contact_sheet.png").string() << "\n"
+              << "report:        " << (options.out / "report.json").string() << "\n";
+    return 0;
+}

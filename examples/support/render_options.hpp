@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// The command line of the program generative_rendering.
+#pragma once
+
+#include "../scenes/scenes.hpp"
+
+#include <genrender/baselines/per_frame.hpp>
+#include <genrender/models/prompt_vocabulary.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace genrender::examples {
+
+/// Everything a run is told. One of `scene`, `model` and `maps` is not empty.
+struct render_options {
+    std::string scene;
+    std::filesystem::path model;
+    std::filesystem::path maps;
+    std::string prompt;
+    std::filesystem::path out;
+    std::filesystem::path beside; ///< an earlier run to compare with
+    std::filesystem::path weights;
+    std::optional<std::size_t> frames;
+    std::optional<std::size_t> keyframes;
+    std::size_t size = 64;
+    std::size_t threads = 0;
+    std::uint64_t seed = 0;
+    bool is_per_frame = false;
+    bool is_quiet = false;
+    render_settings<float> settings;
+};
+
+/// Thrown when the command line does not describe a run; `exit_code` is 0 after --help and 2 else.
+struct no_run {
+    int exit_code;
+};
+
+namespace detail {
+
+inline std::string listed(auto const& names, char const* separator) {
+    std::string text;
+    for (auto const& name : names) {
+        text += (text.empty() ? "" : separator) + std::string(name);
+    }
+    return text;
+}
+
+} // namespace detail
+
+/// The options of a command line. Prints help or what is wrong, and throws no_run, if there is nothing to run.
+inline render_options parse_render_options(int argc, char const* const* argv) {
+    render_options options;
+    auto& settings = options.settings;
+    CLI::App app("Renders an animated, untextured 3D scene as a stylised animation: UV and depth maps guide a 2D diffusion\n"
+                 "network, whose features are kept consistent along the surfaces (Generative Rendering, Alg. 1).");
+    app.get_formatter()->column_width(34);
+    // Descriptions say what is allowed; the checks' own would say it again in another tongue.
+    auto const positive = CLI::Range(std::size_t{1}, std::size_t{1} << 20).description("");
+    auto const one_of = [](auto names) { return CLI::IsMember(std::move(names)).description(""); };
+    using names_type = std::vector<std::string>;
+
+    auto* const input = app.add_option_group("Input", "what is rendered (one of the three)");
+    input->add_option("--scene", options.scene, "built-in scene: " + detail::listed(scenes::names, ", "))
+        ->check(one_of(names_type(scenes::names.begin(), scenes::names.end())))
+        ->type_name("NAME");
+    input->add_option("--model", options.model, "animated model file, of any format that assimp reads")->type_name("FILE");
+    input->add_option("--maps", options.maps, "folder of EXR files with UV, depth and object passes, as Blender writes them")
+        ->type_name("DIR");
+    input->require_option(1);
+    app.add_option("--prompt", options.prompt, "what it shall look like, in the words: " + detail::listed(prompt_words, " "))
+        ->required();
+    app.add_option("--out", options.out, "folder for frames, maps, animation, contact sheet and report")
+        ->required()
+        ->type_name("DIR");
+    app.add_option("--beside", options.beside, "folder of an earlier run, shown beside this one in comparison.png and .webp")
+        ->type_name("DIR");
+
+    std::size_t frames = 0;
+    auto* const frames_option =
+        app.add_option("--frames", frames, "number of frames (24; with --maps: at most this many)")
+            ->check(positive)
+            ->type_name("N");
+    app.add_option("--size", options.size, "height of the frames in pixels, a multiple of 8; the width follows the input")
+        ->capture_default_str()
+        ->check(positive)
+        ->type_name("PX");
+    settings.steps = 20;
+    app.add_option("--steps", settings.steps, "denoising steps")
+        ->capture_default_str()
+        ->check(positive)
+        ->type_name("N");
+    app.add_option("--seed", options.seed, "of noise, keyframes and random weights")->capture_default_str()->type_name("S");
+    std::string sampler_name = "euler";
+    app.add_option("--sampler", sampler_name, "euler, heun or dpmpp_2m")
+        ->capture_default_str()
+        ->check(one_of(names_type{"euler", "heun", "dpmpp_2m"}))
+        ->type_name("NAME");
+
+    std::string method = "generative_rendering";
+    app.add_option("--method", method, "generative_rendering, or the baseline per_frame")
+        ->capture_default_str()
+        ->check(one_of(names_type{"generative_rendering", "per_frame"}))
+        ->type_name("NAME");
+    std::string noise;
+    auto* const noise_option = app.add_option("--noise", noise, "initial noise: uv (moves with the surfaces), fixed (sticks to "
+                                                                "the screen) or independent; uv, for per_frame independent")
+                                   ->check(one_of(names_type{"uv", "fixed", "independent"}))
+                                   ->type_name("KIND");
+    auto* const ours = app.add_option_group("Of the method", "not with --method per_frame");
+    float alpha = 0.7f;
+    std::size_t keyframes = 0;
+    auto* const keyframes_option =
+        ours->add_option("--keyframes", keyframes, "m, drawn anew each step (4, or all frames if they are fewer)")
+            ->check(positive)
+            ->type_name("M");
+    ours->add_option("--alpha", alpha, "of post-attention injection (eq. 6), 0 to 1")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1.0).description(""))
+        ->type_name("A");
+    bool no_pre = false;
+    bool no_post = false;
+    bool no_adain = false;
+    ours->add_flag("--no-pre", no_pre, "no pre-attention injection (eq. 3 and 5)");
+    ours->add_flag("--no-post", no_post, "no post-attention injection (eq. 6)");
+    ours->add_flag("--no-adain", no_adain, "no latent normalisation");
+
+    app.add_option("--weights", options.weights, "safetensors file of the reference network; random weights without one")->type_name("FILE");
+    app.add_option("--threads", options.threads, "0: as many as the machine has")->capture_default_str()->type_name("N");
+    app.add_flag("--quiet", options.is_quiet, "no progress");
+    app.footer("It writes OUT/frames/0000.png ..., OUT/maps/, OUT/animation.webp, OUT/contact_sheet.png and OUT/report.json.\n"
+               "Exit code: 0 done, 1 failed, 2 bad arguments.");
+    try {
+        app.parse(argc, argv);
+        options.is_per_frame = method == "per_frame";
+        if (options.is_per_frame && ours->count_all() > 0) {
+            throw CLI::ValidationError("--method", "per_frame has no keyframes, injection or normalisation to set");
+        }
+    } catch (CLI::ParseError const& error) {
+        throw no_run{app.exit(error) == 0 ? 0 : 2};
+    }
+
+    if (frames_option->count() > 0) {
+        options.frames = frames;
+    }
+    if (keyframes_option->count() > 0) {
+        options.keyframes = keyframes;
+    }
+    settings.method = sampler_name == "heun"       ? sampler::heun
+                      : sampler_name == "dpmpp_2m" ? sampler::dpmpp_2m
+                                                   : sampler::euler;
+    settings.alpha = [alpha](std::size_t, attention_site const&) { return alpha; };
+    settings.pre_attention = !no_pre;
+    settings.post_attention = !no_post;
+    settings.normalization.enabled = !no_adain;
+    settings.noise.seed = options.seed;
+    settings.keyframes.seed = options.seed;
+    if (options.is_per_frame) {
+        settings = per_frame(settings);
+    }
+    if (noise_option->count() > 0) {
+        settings.noise.kind = noise == "uv" ? noise_kind::uv : noise == "fixed" ? noise_kind::fixed : noise_kind::independent;
+    }
+    return options;
+}
+
+} // namespace genrender::examples

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// What a run leaves behind to look at: frames, maps, a moving picture, a contact sheet, a comparison.
+#pragma once
+
+#include "animation_file.hpp"
+#include "contact_sheet.hpp"
+#include "guidance_source.hpp"
+#include "output_file.hpp"
+#include "pictures.hpp"
+
+#include <genrender/models/haar.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace genrender::examples {
+
+/// Images [frames, 3, height, width] in [0, 1] of latents [frames, 12, height / 2, width / 2].
+inline tensor<float, 4> decoded(latents<float> const& z) {
+    auto const& shape = z.shape();
+    auto images = tensor<float, 4>::from_shape({shape[0], shape[1] / 4, 2 * shape[2], 2 * shape[3]});
+    for (std::size_t i = 0; i < shape[0]; ++i) {
+        haar_decode(to_view(images)[i], to_view(z)[i]);
+    }
+    // As a picture file will hold them, so that errors are measured on what is seen.
+    for (auto& value : images) {
+        value = std::clamp(value, 0.0f, 1.0f);
+    }
+    return images;
+}
+
+/// `0007.png`
+inline std::string numbered_png(std::size_t frame) {
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "%04zu.png", frame);
+    return name.data();
+}
+
+/// Writes every picture into a new folder, one file each.
+inline void write_numbered(std::filesystem::path const& folder, std::vector<rgb8_image> const& pictures,
+                           std::string const& prefix = "") {
+    make_folder(folder);
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        write_png(folder / (prefix + numbered_png(i)), pictures[i]);
+    }
+}
+
+/// How many times frames of this height are enlarged so that a person can look at them.
+inline std::size_t viewing_factor(std::size_t height) { return std::max<std::size_t>(1, 256 / height); }
+
+/// Writes a run's pictures below `out`: maps/, frames/, animation.webp and contact_sheet.png, frames before what is made of
+/// them. Throws file_error if one cannot be written; those before it stay.
+inline void write_pictures(std::filesystem::path const& out, rendered_guidance const& guidance,
+                           std::vector<rgb8_image> const& frames) {
+    write_numbered(out / "frames", frames);
+    write_numbered(out / "maps", uv_pictures(guidance.uv), "uv_");
+    write_numbered(out / "maps", depth_pictures(guidance.depth), "depth_");
+    auto const factor = viewing_factor(frames.front().height);
+    std::vector<rgb8_image> large;
+    for (auto const& frame : frames) {
+        large.push_back(enlarge(frame, factor));
+    }
+    write_animation(out / "animation.webp", large);
+    write_png(out / "contact_sheet.png", contact_sheet(frames, {.enlargement = std::max<std::size_t>(1, factor / 2)}));
+}
+
+/// Writes comparison.png, one row of an earlier run's frames over one of this run's, and comparison.webp, both side by side.
+/// Throws file_error if the earlier frames cannot be read or are not alike.
+inline void write_comparison(std::filesystem::path const& out, std::filesystem::path const& earlier,
+                             std::string const& earlier_name, std::vector<rgb8_image> const& frames, std::string const& name) {
+    std::vector<rgb8_image> pairs;
+    std::vector<rgb8_image> before;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        auto const path = earlier / "frames" / numbered_png(i);
+        before.push_back(read_png(path));
+        if (before.back().height != frames[i].height || before.back().width != frames[i].width) {
+            throw file_error(path.string() + ": the frame is " +
+                             extents_text({before.back().height, before.back().width}) + ", expected " +
+                             extents_text({frames[i].height, frames[i].width}));
+        }
+        std::array const both{before.back(), frames[i]};
+        pairs.push_back(contact_sheet(both, {.columns = 2, .enlargement = viewing_factor(frames[i].height),
+                                             .labels = {earlier_name, name}}));
+    }
+    write_animation(out / "comparison.webp", pairs);
+
+    // A handful of frames over the whole time, enough to see what stays and what changes.
+    auto const columns = std::min<std::size_t>(8, frames.size());
+    std::vector<rgb8_image> rows;
+    std::vector<std::string> labels;
+    for (auto const* const run : {&std::as_const(before), &frames}) {
+        for (std::size_t c = 0; c < columns; ++c) {
+            auto const frame = c * frames.size() / columns;
+            rows.push_back((*run)[frame]);
+            labels.push_back((run == &before ? earlier_name : name) + " " + std::to_string(frame));
+        }
+    }
+    write_png(out / "comparison.png",
+              contact_sheet(rows, {.columns = columns,
+                                   .enlargement = std::max<std::size_t>(1, viewing_factor(frames[0].height) / 2),
+                                   .labels = labels}));
+}
+
+} // namespace genrender::examples

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// The report of a run, as JSON.
+#pragma once
+
+#include "guidance_source.hpp"
+#include "render_options.hpp"
+
+#include <genrender/core/tensor.hpp>
+#include <genrender/evaluation/correspondence_error.hpp>
+#include <genrender/pipeline/render_report.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace genrender::examples {
+
+/// Time since it was made.
+class stopwatch {
+public:
+    double seconds() const { return std::chrono::duration<double>(clock::now() - start_).count(); }
+
+private:
+    using clock = std::chrono::steady_clock;
+    clock::time_point start_ = clock::now();
+};
+
+/// Seconds by the clock on the wall: in total, in the denoiser, in the library, and in files, pictures and maps. The run
+/// measured its two parts in seconds of threads, which share the wall's seconds of rendering alike.
+inline nlohmann::ordered_json seconds_of(render_report const& report, double total, double rendering) {
+    auto const parts = report.denoiser_seconds() + report.library_seconds();
+    auto const library = parts > 0 ? rendering * report.library_seconds() / parts : rendering;
+    return {{"total", total}, {"denoiser", rendering - library}, {"library", library}, {"other", total - rendering}};
+}
+
+/// What report.json says of a run but its times: settings, memory, coverage, correspondence error, notes.
+inline nlohmann::ordered_json report_of(render_options const& options, guidance_source const& source,
+                                        render_report const& report, tensor<float, 4> const& images) {
+    nlohmann::ordered_json json;
+    auto const& settings = options.settings;
+    constexpr std::array<char const*, 3> noises{"uv", "fixed", "independent"};
+    constexpr std::array<char const*, 3> samplers{"euler", "heun", "dpmpp_2m"};
+    json["method"] = options.is_per_frame ? "per_frame" : "generative_rendering";
+    auto& told = json["settings"];
+    told["input"] = !options.scene.empty()   ? options.scene
+                    : !options.model.empty() ? options.model.string()
+                                             : options.maps.string();
+    told["prompt"] = options.prompt;
+    told["weights"] = options.weights.empty() ? "random" : options.weights.string();
+    told["frames"] = images.shape()[0];
+    told["size"] = {source.image.height, source.image.width};
+    told["map_size"] = {source.guidance.uv.grid().height, source.guidance.uv.grid().width};
+    told["steps"] = settings.steps;
+    told["sampler"] = samplers[static_cast<std::size_t>(settings.method)];
+    told["seed"] = options.seed;
+    told["noise"] = noises[static_cast<std::size_t>(settings.noise.kind)];
+    if (!options.is_per_frame) {
+        told["keyframes"] = settings.keyframes.count;
+        told["alpha"] = settings.alpha(0, {});
+        told["pre_attention"] = settings.pre_attention;
+        told["post_attention"] = settings.post_attention;
+        told["adain"] = settings.normalization.enabled;
+    }
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    json["peak_resident_bytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+    json["coverage"] = nlohmann::ordered_json::object();
+    for (auto const& [grid, count] : report.coverage()) {
+        json["coverage"][std::to_string(grid.height) + "x" + std::to_string(grid.width)] = count.share();
+    }
+    texel_grid const pixels(to_uv_view(source.guidance.uv), source.image);
+    json["correspondence_error"] = nlohmann::ordered_json::object();
+    for (std::size_t const interval : {1U, 5U, 10U}) {
+        auto const error = correspondence_error(to_view(images), pixels, interval);
+        json["correspondence_error"][std::to_string(interval)] =
+            error ? nlohmann::ordered_json(*error) : nlohmann::ordered_json(nullptr);
+    }
+    json["frames_without_background"] = report.skipped_frames();
+    json["notes"] = source.notes;
+    return json;
+}
+
+} // namespace genrender::examples

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1: f_KF, F_KF] The keyframe pass: extended attention where places take part, features kept once.
+#include <genrender/keyframes/recorder.hpp>
+
+#include <genrender/core/parallel.hpp>
+#include <genrender/injection/host_attention_call.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/matrix_module.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+using namespace genrender;
+using genrender::testing::matrix_module;
+using genrender::testing::random_stack;
+
+namespace {
+
+using features = host_features<double>;
+using module_type = matrix_module<double>;
+using call_type = host_attention_call<double, module_type>;
+
+constexpr std::size_t keyframes = 3;
+constexpr std::size_t tokens = 5;
+constexpr std::size_t channels = 4;
+std::vector<frame_index> const drawn{{7}, {2}, {4}};
+
+bool always(attention_place) { return true; }
+bool never(attention_place) { return false; }
+
+bool equal_bits(features const& a, features const& b) {
+    return a.extents() == b.extents() && std::equal(a.view().data(), a.view().data() + a.view().size(), b.view().data());
+}
+
+/// Features that are contiguous and the handle's own.
+features input(std::uint64_t seed) {
+    auto const f = features::allocate({keyframes, tokens, channels});
+    auto const values = random_stack<double, 3>({keyframes, tokens, channels}, seed);
+    copy(f.view(), values.view());
+    return f;
+}
+
+features extended(call_type const& call) {
+    auto const K = call.key(call.f());
+    auto const V = call.value(call.f());
+    return call.attend(call.query(call.f()), extended_attention_sources(K, V, keyframes));
+}
+
+} // namespace
+
+TEST_SUITE("keyframes/recorder") {
+    TEST_CASE("[GR alg. 1] a place that takes part attends over all keyframes and is kept") {
+        module_type const module(channels, 2, 1);
+        feature_bank<features> bank(2, 1);
+        recorder<features> const pass(bank, always);
+        call_type call({{1}, 0}, drawn, input(3), module);
+        auto const F = pass(call);
+        CHECK(equal_bits(F, extended(call)));
+
+        auto const* const kept = bank.find({{1}, 0});
+        REQUIRE(kept != nullptr);
+        REQUIRE(kept->K_KF.has_value());
+        REQUIRE(kept->V_KF.has_value());
+        REQUIRE(kept->F_KF.has_value());
+        CHECK_FALSE(kept->f_KF.has_value());
+        CHECK(equal_bits(*kept->K_KF, call.key(call.f())));
+        CHECK(equal_bits(*kept->V_KF, call.value(call.f())));
+        CHECK(equal_bits(*kept->F_KF, F));
+        CHECK(bank.find({{0}, 0}) == nullptr);
+    }
+
+    TEST_CASE("[GR alg. 1] K_KF and V_KF are projected exactly once per keyframe and place") {
+        module_type const module(channels, 1, 1);
+        feature_bank<features> bank(1, 1);
+        recorder<features> const pass(bank, always);
+        call_type call({}, drawn, input(3), module);
+        pass(call);
+        CHECK(module.queries == keyframes);
+        CHECK(module.keys == keyframes);
+        CHECK(module.values == keyframes);
+    }
+
+    TEST_CASE("places that the filter leaves out keep plain attention and leave nothing in the bank") {
+        module_type const module(channels, 2, 1);
+        feature_bank<features> bank(2, 1);
+        recorder<features> const pass(bank, [](attention_place place) { return place.site.value == 1; });
+        call_type left_out({{0}, 0}, drawn, input(3), module);
+        call_type taken({{1}, 0}, drawn, input(3), module);
+        CHECK(equal_bits(pass(left_out), plain_attention{}(left_out)));
+        CHECK(bank.find({{0}, 0}) == nullptr);
+        CHECK_FALSE(equal_bits(pass(taken), plain_attention{}(taken)));
+        CHECK(bank.find({{1}, 0}) != nullptr);
+    }
+
+    TEST_CASE("a recorder that records nowhere is plain attention") {
+        module_type const module(channels, 1, 1);
+        feature_bank<features> bank(1, 1);
+        recorder<features> const pass(bank, never);
+        call_type call({}, drawn, input(5), module);
+        CHECK(equal_bits(pass(call), plain_attention{}(call)));
+        CHECK(bank.find({}) == nullptr);
+        CHECK_FALSE(pass.records({}));
+        CHECK_FALSE(pass.attends_to_stack({}));
+    }
+
+    TEST_CASE("guidance branches are kept apart") {
+        module_type const module(channels, 1, 1);
+        feature_bank<features> bank(1, 2);
+        recorder<features> const pass(bank, always);
+        call_type unconditional({{0}, 0}, drawn, input(1), module);
+        call_type conditional({{0}, 1}, drawn, input(2), module);
+        auto const F_0 = pass(unconditional);
+        auto const F_1 = pass(conditional);
+        CHECK(equal_bits(*bank.find({{0}, 0})->F_KF, F_0));
+        CHECK(equal_bits(*bank.find({{0}, 1})->F_KF, F_1));
+        CHECK_FALSE(equal_bits(F_0, F_1));
+        CHECK(equal_bits(*bank.find({{0}, 0})->K_KF, unconditional.key(unconditional.f())));
+        CHECK(equal_bits(*bank.find({{0}, 1})->K_KF, conditional.key(conditional.f())));
+    }
+
+    TEST_CASE("without extension keyframes attend to themselves and are kept all the same") {
+        module_type const module(channels, 1, 1);
+        feature_bank<features> bank(1, 1);
+        recorder<features> const pass(bank, always, false);
+        call_type call({}, drawn, input(5), module);
+        auto const F = pass(call);
+        CHECK(equal_bits(F, plain_attention{}(call)));
+        REQUIRE(bank.find({}) != nullptr);
+        CHECK(equal_bits(*bank.find({})->F_KF, F));
+        CHECK(pass.records({}));
+        CHECK_FALSE(pass.attends_to_stack({}));
+    }
+
+    TEST_CASE("one keyframe alone is plain attention") {
+        module_type const module(channels, 1, 1);
+        feature_bank<features> bank(1, 1);
+        recorder<features> const pass(bank, always);
+        std::vector<frame_index> const one{{3}};
+        auto const f = features::allocate({1, tokens, channels});
+        copy(f.view(), random_stack<double, 3>({1, tokens, channels}, 8).view());
+        call_type call({}, one, f, module);
+        CHECK(equal_bits(pass(call), plain_attention{}(call)));
+    }
+
+    TEST_CASE("what is kept does not change when the engine reuses the memory of f") {
+        module_type const module(channels, 1, 1);
+        feature_bank<features> bank(1, 1);
+        recorder<features> const pass(bank, always);
+        auto engine = random_stack<double, 3>({keyframes, tokens, channels}, 4);
+        {
+            call_type call({}, drawn, features(engine.view()), module);
+            pass(call);
+        }
+        auto const before = (*bank.find({})->F_KF).view()(2, 4, 3);
+        auto const key_before = (*bank.find({})->K_KF).view()(2, 4, 3);
+        std::fill(engine.data(), engine.data() + engine.size(), -1.0);
+        CHECK((*bank.find({})->F_KF).view()(2, 4, 3) == before);
+        CHECK((*bank.find({})->K_KF).view()(2, 4, 3) == key_before);
+    }
+
+    TEST_CASE("the filter is asked once per place and pass") {
+        module_type const module(channels, 1, 1);
+        feature_bank<features> bank(1, 1);
+        int asked = 0;
+        recorder<features> const pass(bank, [&](attention_place) {
+            ++asked;
+            return true;
+        });
+        call_type call({}, drawn, input(5), module);
+        pass(call);
+        CHECK(asked == 1);
+    }
+
+    TEST_CASE("features of a static graph are kept where the place takes part") {
+        feature_bank<features> bank(2, 1);
+        recorder<features> const pass(bank, [](attention_place place) { return place.site.value == 0; });
+        auto const f = input(1);
+        auto const F = input(2);
+        pass.record({{0}, 0}, f, F);
+        pass.record({{1}, 0}, f, F);
+        REQUIRE(bank.find({{0}, 0}) != nullptr);
+        CHECK(bank.find({{0}, 0})->f_KF->view().data() == f.view().data());
+        CHECK(bank.find({{0}, 0})->F_KF->view().data() == F.view().data());
+        CHECK_FALSE(bank.find({{0}, 0})->K_KF.has_value());
+        CHECK(bank.find({{1}, 0}) == nullptr);
+    }
+
+    TEST_CASE("calls at different places may run at the same time") {
+        module_type const module(channels, 1, 1);
+        feature_bank<features> bank(12, 2);
+        recorder<features> const pass(bank, always);
+        threaded_loop{4}(24, [&](std::size_t at) {
+            call_type call({{static_cast<std::uint32_t>(at / 2)}, static_cast<std::uint32_t>(at % 2)}, drawn, input(at), module);
+            pass(call);
+        });
+        CHECK(module.keys == 24 * keyframes);
+        for (std::uint32_t at = 0; at < 24; ++at) {
+            call_type call({{at / 2}, at % 2}, drawn, input(at), module);
+            REQUIRE(bank.find({{at / 2}, at % 2}) != nullptr);
+            CHECK(equal_bits(*bank.find({{at / 2}, at % 2})->F_KF, extended(call)));
+        }
+    }
+}
