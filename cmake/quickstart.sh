@@ -93,13 +93,14 @@ demo() {
     install_packages $demo_packages
     workflow demo
     output=build/demo_output
-    for method in generative_rendering per_frame; do
-        say "Rendering, method $method"
-        build/demo/examples/generative_rendering --scene walking_figure --prompt "a porcelain figure on a meadow" \
-            --method "$method" --out "$output/$method"
-    done
-    say "Done: the same noise and network, once frame by frame and once with consistent features"
-    find "$output" -maxdepth 2 -type f | sort
+    render="build/demo/examples/generative_rendering --scene walking_figure --quiet"
+    prompt="marble stripes"
+    say "Rendering frame by frame"
+    $render --prompt "$prompt" --method per_frame --out $output/per_frame
+    say "Rendering with consistent features"
+    $render --prompt "$prompt" --out $output/generative_rendering --beside $output/per_frame
+    say "Both, one above the other"
+    ls $output/generative_rendering/comparison.*
 }
 
 run_tests() {

@@ -28,7 +28,7 @@ struct rolling_ball {
     glm::vec2 centre(frame_index i) const { return {0.5f * time(i) - 0.25f, 0}; }
     glm::mat3 turn(frame_index i) const {
         auto const rolled = glm::rotate(glm::mat4(1), -0.5f / radius * time(i), glm::vec3(0, 0, 1));
-        return glm::mat3(glm::rotate(rolled, 1.1f - 0.6f * time(i), glm::vec3(1, 0, 0)));
+        return glm::mat3(glm::rotate(rolled, 1.2f - 1.2f * time(i), glm::vec3(1, 0, 0)));
     }
 
     // The point of the unit ball at rest that is seen at `at`; none beside the ball.
@@ -50,7 +50,8 @@ glm::vec2 centre_of(grid_extents grid, std::size_t row, std::size_t column) {
             1 - 2 * (static_cast<float>(row) + 0.5f) / static_cast<float>(grid.height)};
 }
 
-// The user's model of correspondence_map. A surface point is what the scene says it is: here a place on the ball at rest.
+// The user's model of correspondence_map. A surface point is what the scene says it is: here a place on the ball at
+// rest.
 struct rest_pose_map {
     using point_type = glm::vec3;
     rolling_ball ball;
@@ -75,7 +76,7 @@ static_assert(correspondence_map<rest_pose_map>);
 
 int main() try {
     // What a renderer would draw: UVs as on a globe, pinched at the poles, and how near the ball is.
-    rolling_ball const ball{5};
+    rolling_ball const ball{4};
     grid_extents const pixels{64, 64};
     uv_maps maps(ball.frames, pixels);
     auto nearness = tensor<float, 3>::from_shape(maps.coverage.shape());
@@ -95,7 +96,7 @@ int main() try {
     auto const UV = to_uv_view(maps);
 
     // Noise still comes from the UV maps; every feature resolution gets a map from `make_map`.
-    auto const network = reference_network<float>::seeded(to_view(nearness), "marble", 1);
+    auto const network = reference_network<float>::seeded(to_view(nearness), "marble", 1, 1.0f);
     render_settings<float> settings;
     settings.steps = 2;
     settings.keyframes.count = 2;
@@ -108,9 +109,9 @@ int main() try {
     std::printf("Tokens of the ball that some keyframe shows, too:\n  feature map   rest pose   texel grid\n");
     for (auto const& [grid, count] : by_rest_pose.coverage()) {
         auto const texels = by_texel_grid.coverage().at(grid);
-        std::printf("  %3zu x %-3zu    %8.1f %%   %8.1f %%\n", grid.height, grid.width, 100 * count.share(), 100 * texels.share());
-        require_value(count.share() >= texels.share(), "your_own_correspondence", "coverage", count.share(),
-                      "at least that of the texel grid, which asks more of a surface");
+        std::printf("  %3zu x %-3zu    %8.1f %%   %8.1f %%\n", grid.height, grid.width, 100 * count.share(),
+                    100 * texels.share());
+        require_value(count.share() > 0.8, "your_own_correspondence", "coverage", count.share(), "above 0.8");
     }
 } catch (std::exception const& error) {
     std::fprintf(stderr, "%s\n", error.what());

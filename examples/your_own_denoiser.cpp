@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Your own engine behind genrender, wired in both ways: it calls back at each self-attention site, or it runs a static graph.
+// Your own engine behind genrender, wired both ways: called back at each self-attention site, or as a static graph.
 #include "scenes/camera_rotation.hpp"
 #include "support/my_engine.hpp"
 
@@ -22,17 +22,19 @@ namespace my_engine {
 strided_view<float, 3> to_view(tensor const& t) { return {t.memory.get(), t.sizes, t.strides}; }
 } // namespace my_engine
 
-// What both ways share: what the network is, and the way of latents through it. Prompts, depth and guidance are its own.
+// What both ways share: what the network is, and the way of latents through it. Prompts, depth and guidance are its
+// own.
 struct my_denoiser {
     using real_type = float;
     using features_type = my_tensor;
     static constexpr grid_extents grid{8, 8};
     my_engine::network net;
-    std::array<attention_site, 2> sites_{{{"down.attn1", network_kind::denoiser, network_part::encoder, grid, net.channels},
-                                          {"up.attn1", network_kind::denoiser, network_part::decoder, grid, net.channels}}};
+    std::array<attention_site, 2> modules{
+        {{"down.attn1", network_kind::denoiser, network_part::encoder, grid, net.channels},
+         {"up.attn1", network_kind::denoiser, network_part::decoder, grid, net.channels}}};
     std::size_t latent_channels() const { return net.latent_channels; }
     grid_extents latent_grid() const { return grid; }
-    std::span<attention_site const> sites() const { return sites_; }
+    std::span<attention_site const> sites() const { return modules; }
     std::size_t branches() const { return net.prompts; }
 
     // D(z, sigma) of a network that predicts v; run(place, f) runs a self-attention module.
@@ -52,8 +54,8 @@ struct my_denoiser {
     }
 };
 
-// First way in: at each site the engine calls back, and lends the processor its operations. Where it has none of its own, as
-// here for attention and mixing, the library's kernels run on views of its memory.
+// First way in: at each site the engine calls back, and lends the processor its operations. Where it has none of its
+// own, as here for attention and mixing, the library's kernels run on views of its memory.
 struct my_call {
     using features_type = my_tensor;
     using real_type = float;
@@ -78,7 +80,8 @@ struct my_call {
         }
         return F;
     }
-    my_tensor mix(my_tensor const& F, my_tensor const& F_KF, std::span<sparse_rows<float> const> rows, float alpha) const {
+    my_tensor mix(my_tensor const& F, my_tensor const& F_KF, std::span<sparse_rows<float> const> rows,
+                  float alpha) const {
         for (std::size_t i = 0; i < rows.size(); ++i) {
             post_attention(to_view(F)[i], F_KF, rows[i], alpha);
         }
@@ -97,14 +100,15 @@ struct calling_denoiser : my_denoiser {
     }
 };
 
-// Second way in: nothing can be called from within a static graph. It takes extra inputs and gives extra outputs instead.
+// Second way in: nothing can be called from within a static graph. It takes extra inputs and gives extra outputs
+// instead.
 struct graph_denoiser : my_denoiser {
     template <feature_io_processor<my_tensor, float> Processor>
     void operator()(strided_view<float, 4> x0, strided_view<float const, 4> z, float sigma,
                     std::span<frame_index const> frames, Processor& processor) const {
         std::map<attention_place, feature_inputs<my_tensor, float>> inputs;
         std::map<attention_place, std::array<my_tensor, 2>> outputs;
-        for (std::uint32_t site = 0; site < sites_.size(); ++site) {
+        for (std::uint32_t site = 0; site < modules.size(); ++site) {
             for (std::uint32_t branch = 0; branch < branches(); ++branch) {
                 attention_place const place{{site}, branch};
                 inputs[place] = inputs_at<my_tensor, float>(processor, place, frames);
@@ -124,8 +128,11 @@ struct graph_denoiser : my_denoiser {
     // A self-attention module as it is built into the graph, of the engine's operations alone.
     static my_tensor module_of_graph(my_engine::self_attention const& module, my_tensor const& f,
                                      feature_inputs<my_tensor, float> const& in) {
-        auto const own = my_engine::key_values{module.key(f), module.value(f)};
-        auto const joined = in.f_KF != nullptr ? my_engine::key_values{module.key(*in.f_KF), module.value(*in.f_KF)} : own;
+        my_engine::key_values const own{module.key(f), module.value(f)};
+        my_engine::key_values joined;
+        if (in.f_KF != nullptr) {
+            joined = {module.key(*in.f_KF), module.value(*in.f_KF)};
+        }
         my_engine::attention_lists lists(f.sizes[0]);
         for (std::size_t i = 0; i < lists.size(); ++i) {
             for (std::size_t j = 0; j < lists.size(); ++j) { // eq. 1, or eq. 3 over the whole stack
@@ -133,7 +140,7 @@ struct graph_denoiser : my_denoiser {
                     lists[i].push_back({own, j});
                 }
             }
-            for (std::size_t k = 0; in.f_KF != nullptr && k < in.f_KF->sizes[0]; ++k) { // eq. 5
+            for (std::size_t k = 0; k < joined.K.sizes[0]; ++k) { // eq. 5
                 if (k != in.left_out[i]) {
                     lists[i].push_back({joined, k});
                 }
@@ -166,7 +173,8 @@ int main() try {
         difference = std::max(difference, std::abs(called.data()[e] - graphed.data()[e]));
         effect = std::max(effect, std::abs(called.data()[e] - alone.data()[e]));
     }
-    std::printf("Latents move by up to %.2f with injection, and differ by %.1e between both ways in.\n", effect, difference);
+    std::printf("Latents move by up to %.2f with injection, and differ by %.1e between the two ways in.\n", effect,
+                difference);
     require_value(difference <= 1e-5f && effect > 0.01f, "your_own_denoiser", "difference", difference,
                   "at most 1e-5, at frames that injection changes");
 } catch (std::exception const& error) {

@@ -29,10 +29,10 @@ inline float phase_bump(float phase, float centre, float width) {
 inline limb_angles limbs_at(float phase) {
     auto const turn = 2 * std::numbers::pi_v<float>;
     limb_angles degrees{};
-    degrees.hip = 9 + 21 * std::cos(turn * (phase + 0.05f)) - 3 * std::cos(2 * turn * (phase - 0.02f));
-    degrees.knee = 4 + 14 * phase_bump(phase, 0.14f, 0.09f) + 58 * phase_bump(phase, 0.73f, 0.125f);
-    degrees.ankle = 1 - 7 * phase_bump(phase, 0.08f, 0.05f) + 9 * phase_bump(phase, 0.43f, 0.13f) -
-                    21 * phase_bump(phase, 0.63f, 0.075f) + 3 * phase_bump(phase, 0.85f, 0.1f);
+    degrees.hip = 9 + 26 * std::cos(turn * (phase + 0.04f)) - 3 * std::cos(2 * turn * (phase - 0.02f));
+    degrees.knee = 3 + 11 * phase_bump(phase, 0.14f, 0.08f) + 58 * phase_bump(phase, 0.70f, 0.14f);
+    degrees.ankle = 1 - 8 * phase_bump(phase, 0.07f, 0.05f) + 9 * phase_bump(phase, 0.43f, 0.13f) -
+                    13 * phase_bump(phase, 0.64f, 0.06f) + 3 * phase_bump(phase, 0.85f, 0.1f);
     // The arm swings against the leg, and bends more when it is in front.
     degrees.shoulder = 3 - 25 * std::cos(turn * (phase - 0.02f));
     degrees.elbow = 24 - 13 * std::cos(turn * (phase - 0.06f));

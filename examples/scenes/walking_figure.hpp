@@ -39,9 +39,9 @@ public:
         objects_.push_back({{1}, skin_surface_, {}});
         // Stones along the far side of the path, so that what is behind the figure moves too.
         for (auto z = -3.2f; z < way + 1; z += 2.6f) {
-            place(make_cylinder(0.28f, 1.1f, 32), {-1.7f, 0.55f, z});
-            place(make_box({0.7f, 0.5f, 0.7f}), {-2.5f, 0.25f, z + 1.1f});
-            place(make_sphere(0.42f, 40), {-3.6f, 0.42f, z + 1.9f});
+            place(make_cylinder(0.28f, 1.1f, 32), {-2.9f, 0.55f, z + 0.6f});
+            place(make_box({0.7f, 0.5f, 0.7f}), {-2.0f, 0.25f, z + 1.7f});
+            place(make_sphere(0.42f, 40), {-3.8f, 0.42f, z + 2.2f});
         }
     }
 

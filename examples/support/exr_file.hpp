@@ -36,7 +36,7 @@ struct exr_channel {
 class exr_file {
 public:
     /// Reads the headers. Throws file_error if the file is missing, foreign, broken, of deep data, or larger than
-    /// 2^28 pixels.
+    /// 2^26 pixels.
     explicit exr_file(std::filesystem::path path) : path_(std::move(path)) {
         guarded([&] { file_ = std::make_unique<Imf::MultiPartInputFile>(path_.c_str(), 0); });
         window_ = file_->header(0).displayWindow();
@@ -100,12 +100,12 @@ private:
                 static_cast<std::size_t>(std::int64_t{window.max.x} - window.min.x + 1)};
     }
 
-    // Broken headers ask for absurd amounts of memory; nobody renders maps of 2^28 pixels.
+    // Broken headers ask for absurd amounts of memory; nobody renders maps of 2^26 pixels.
     void require_sensible(Imath::Box2i const& window) const {
         auto const grid = extents_of(window);
-        if (window.isEmpty() || grid.height > (1u << 28) / grid.width) {
+        if (window.isEmpty() || grid.height > (1u << 26) / grid.width) {
             throw file_error(path_.string() + ": is an image of " + extents_text({grid.height, grid.width}) +
-                             " pixels, expected 1 to 2^28 of them");
+                             " pixels, expected 1 to 2^26 of them");
         }
     }
 

@@ -8,6 +8,7 @@
 #include "render_options.hpp"
 
 #include <genrender/guidance/rasterizer.hpp>
+#include <genrender/guidance/uv_convention.hpp>
 #include <genrender/guidance/uv_report.hpp>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ inline grid_extents image_extents(grid_extents grid, std::size_t size) {
 inline void add_notes_on(std::vector<std::string>& notes, uv_report const& report) {
     if (report.out_of_range > 0) {
         notes.push_back(std::to_string(report.out_of_range) + " of " + std::to_string(report.covered) +
-                        " covered pixels have UVs outside [0, 1]; they read the texture's border");
+                        " covered pixels have UVs outside [0, 1]; their texture is taken to repeat");
     }
     if (!report.empty_frames.empty()) {
         notes.push_back(std::to_string(report.empty_frames.size()) + " frames show no object");
@@ -87,6 +88,7 @@ guidance_source load_guidance(render_options const& options, Loop const& loop) {
         source.image = detail::image_extents(uv.grid(), options.size);
     }
     detail::add_notes_on(source.notes, inspect(to_uv_view(source.guidance.uv)));
+    adopt_uv(to_view(source.guidance.uv.uv), to_view(source.guidance.uv.coverage), {.outside = uv_outside::wrap});
     return source;
 }
 

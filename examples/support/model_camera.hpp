@@ -15,8 +15,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <numbers>
 #include <span>
+#include <vector>
 
 namespace genrender::examples {
 
@@ -79,13 +82,28 @@ inline float orbit_distance(std::span<glm::vec3 const> points, glm::vec3 centre,
     for (auto const& p : points) {
         auto const radius = std::hypot(p.x - centre.x, p.z - centre.z);
         for (int i = 0; i < steps; ++i) {
-            auto const angle = 6.2831853f * static_cast<float>(i) / steps;
+            auto const angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / steps;
             glm::vec3 const q(radius * std::sin(angle), p.y - centre.y, radius * std::cos(angle));
             auto const reach = std::max(std::abs(glm::dot(q, axes.right)) / t_x, std::abs(glm::dot(q, axes.up)) / t_y);
             distance = std::max(distance, reach - glm::dot(q, axes.forward));
         }
     }
     return distance;
+}
+
+/// Cameras that go once around the middle of `points`, from `azimuth` on towards +x, all at the distance above.
+inline std::vector<camera> orbit_cameras(std::span<glm::vec3 const> points, float azimuth, float elevation,
+                                         float vertical_fov, float aspect, std::size_t frames) {
+    auto const box = bounds_of(points);
+    auto const distance = orbit_distance(points, box.centre(), elevation, vertical_fov, aspect);
+    std::vector<camera> cameras;
+    for (std::size_t i = 0; i < frames; ++i) {
+        auto const turn = static_cast<float>(i) / static_cast<float>(frames);
+        auto const direction = view_direction(azimuth + 2 * std::numbers::pi_v<float> * turn, elevation);
+        cameras.push_back(look_at(box.centre() - distance * direction, box.centre(), vertical_fov));
+        cameras.back().near_distance = 1e-3f * box.radius();
+    }
+    return cameras;
 }
 
 /// The file's camera, whose node's space goes to the world by `to_world`. The vertical angle is the file's where the

@@ -50,8 +50,8 @@ enum class model_up {
 struct model_options {
     /// Number of frames; 0: the whole animation at `frames_per_second`.
     std::size_t frames = 16;
-    /// Without a value the frames go once through the animation, whose end a loop shows as its start; with one it starts
-    /// again when it is over.
+    /// Without a value the frames go once through the animation, whose end a loop shows as its start; with one it
+    /// starts again when it is over.
     std::optional<double> frames_per_second{};
     float aspect = 1;          ///< width / height of the image that cameras are fitted to
     float vertical_fov = 0.6f; ///< of cameras that are not the file's, radians
@@ -68,7 +68,7 @@ class model_animation {
 public:
     std::size_t frame_count() const { return times_.size(); }
 
-    /// Frame i: every mesh instance is an object, in the order of the file's nodes. Throws value_error if there is none.
+    /// Frame i: every mesh instance is an object, in the order of the file's nodes. Throws value_error beyond the end.
     posed_scene frame(frame_index i) const {
         require_value(i.value < times_.size(), "model_animation", "frame", i.value, "a frame of the animation");
         return {cameras_[i.value], objects_at(times_[i.value])};
@@ -236,15 +236,8 @@ private:
                                                       options.vertical_fov, options.aspect));
             return;
         }
-        auto const distance =
-            orbit_distance(points, box.centre(), options.elevation, options.vertical_fov, options.aspect);
-        for (std::size_t i = 0; i < times_.size(); ++i) {
-            auto const turn = static_cast<float>(i) / static_cast<float>(times_.size());
-            auto const azimuth = options.azimuth + 2 * std::numbers::pi_v<float> * turn;
-            auto const position = box.centre() - distance * view_direction(azimuth, options.elevation);
-            cameras_.push_back(look_at(position, box.centre(), options.vertical_fov));
-            cameras_.back().near_distance = 1e-3f * box.radius();
-        }
+        cameras_ = orbit_cameras(points, options.azimuth, options.elevation, options.vertical_fov, options.aspect,
+                                 times_.size());
     }
 
     // Returns whether there are cameras now. One that hardly sees the model belongs to a scene that this file is a

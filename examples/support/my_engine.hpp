@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A toy diffusion engine as a stranger would have it: its own tensors, operations and network, and not a word of genrender.
+// A toy diffusion engine as a stranger would have it: tensors, operations and a network, and not a word of genrender.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace my_engine {
 
-/// A handle of numbers [frames, tokens, channels]; copies share the memory. Rows begin at multiples of 16 numbers, as the
-/// engine's vector unit likes them, so a tensor is not contiguous.
+/// A handle of numbers [frames, tokens, channels]; copies share the memory. Rows begin at multiples of 16 numbers, as
+/// the engine's vector unit likes them, so a tensor is not contiguous.
 struct tensor {
     std::array<std::size_t, 3> sizes{};
     std::array<std::ptrdiff_t, 3> strides{};
@@ -28,8 +28,8 @@ struct tensor {
     }
     /// The channels of one token of one frame.
     std::span<float> row(std::size_t frame, std::size_t token) const {
-        auto const at = static_cast<std::ptrdiff_t>(frame) * strides[0] + static_cast<std::ptrdiff_t>(token) * strides[1];
-        return {memory.get() + at, sizes[2]};
+        auto const pitch = static_cast<std::size_t>(strides[1]);
+        return {memory.get() + (frame * sizes[1] + token) * pitch, sizes[2]};
     }
 };
 
@@ -73,7 +73,8 @@ inline tensor layer_norm(tensor const& x) {
                 square += value * value / channels;
             }
             auto const scale = 1 / std::sqrt(square - mean * mean + 1e-5f);
-            std::transform(in.begin(), in.end(), y.row(frame, token).begin(), [&](float v) { return scale * (v - mean); });
+            auto const out = y.row(frame, token);
+            std::transform(in.begin(), in.end(), out.begin(), [&](float v) { return scale * (v - mean); });
         }
     }
     return y;
@@ -140,8 +141,9 @@ inline tensor attend(tensor const& Q, attention_lists const& lists) {
     return F;
 }
 
-/// The engine's gather operation: row t of frame i of `x` becomes (1 - share) x + share * sum of weights[e] source[rows[e]],
-/// e from offsets[t] to offsets[t + 1], where there is such an e; the rows of `source` are counted through all of its frames.
+/// The engine's gather operation: row t of frame i of `x` becomes (1 - share) x + share * sum of weights[e]
+/// source[rows[e]], e from offsets[t] to offsets[t + 1], where there is such an e; the rows of `source` are counted
+/// through all of its frames.
 inline void mix_gathered(tensor& x, std::size_t i, tensor const& source, std::span<std::uint32_t const> offsets,
                          std::span<std::uint32_t const> rows, std::span<float const> weights, float share) {
     for (std::size_t t = 0; t < x.sizes[1]; ++t) {
@@ -157,22 +159,25 @@ inline void mix_gathered(tensor& x, std::size_t i, tensor const& source, std::sp
 
 /// The weights of one self-attention module.
 struct self_attention {
+    static constexpr std::size_t channels = 24;
     linear query;
     linear key;
     linear value;
     linear out;
+
+    static self_attention with_phase(double phase) {
+        return {{channels, channels, phase}, {channels, channels, phase + 0.1}, {channels, channels, phase + 0.2},
+                {channels, channels, phase + 0.3}};
+    }
 };
 
 /// A network with two self-attention modules that predicts v, guided by two prompts: 0 the empty one, 1 the user's.
 struct network {
     static constexpr std::size_t latent_channels = 4;
-    static constexpr std::size_t channels = 24;
+    static constexpr std::size_t channels = self_attention::channels;
     static constexpr std::uint32_t prompts = 2;
     linear in{channels, latent_channels, 0.1};
-    std::array<self_attention, 2> modules{{{{channels, channels, 0.2}, {channels, channels, 0.3}, {channels, channels, 0.4},
-                                            {channels, channels, 0.5}},
-                                           {{channels, channels, 0.6}, {channels, channels, 0.7}, {channels, channels, 0.8},
-                                            {channels, channels, 0.9}}}};
+    std::array<self_attention, 2> modules{self_attention::with_phase(0.2), self_attention::with_phase(0.6)};
     linear end{latent_channels, channels, 1.0};
 
     /// v for `latents` [frames, tokens, latent_channels] of noise level sigma. A module is run by `run(prompt, m, f)`,

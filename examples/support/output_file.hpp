@@ -37,8 +37,13 @@ public:
         auto folder = path_.parent_path();
         folder = folder.empty() ? "." : folder;
         make_folder(folder);
-        temporary_ = folder / ("." + path_.filename().string() + "." + std::to_string(::getpid()) + "-" +
-                               std::to_string(count++) + ".part");
+        auto name = path_.filename().string();
+        for (auto const part : {static_cast<unsigned>(::getpid()), count++}) {
+            name += '-' + std::to_string(part);
+        }
+        name.insert(name.begin(), '.'); // hidden, and no EXR or PNG by its ending
+        name += ".part";
+        temporary_ = folder / name;
         if (!std::ofstream(temporary_, std::ios::binary)) {
             throw file_error(folder.string() + ": cannot be written, expected a folder where files may be made");
         }

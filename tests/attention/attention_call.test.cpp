@@ -139,8 +139,8 @@ TEST_SUITE("attention/attention_call") {
     TEST_CASE("projections take stacks of any number of frames") {
         matrix_module<double> const module(4, 1, 1);
         std::array const frames{frame_index{0}};
-        host_attention_call<double, matrix_module<double>> const call({}, frames, host_features<double>::allocate({1, 3, 4}),
-                                                                      module);
+        host_attention_call<double, matrix_module<double>> const call(
+            {}, frames, host_features<double>::allocate({1, 3, 4}), module);
         CHECK(call.key(host_features<double>::allocate({5, 2, 4})).extents() == std::array<std::size_t, 3>{5, 2, 4});
         CHECK(module.keys == 5);
     }
@@ -155,7 +155,8 @@ TEST_SUITE("attention/attention_call") {
         auto const V = features<double>({3, 2, 1}, {1, 3, 10, 20, 100, 300});
         auto const other = features<double>({1, 1, 1}, {0});
         auto const far = features<double>({1, 1, 1}, {31});
-        attention_sources<host_features<double>> const sources{{{&K, &V, 2}}, {{&K, &V, 1}, {&other, &far, 0}, {&K, &V, 0}}};
+        attention_sources<host_features<double>> const sources{{{&K, &V, 2}},
+                                                               {{&K, &V, 1}, {&other, &far, 0}, {&K, &V, 0}}};
         auto const F = call.attend(call.query(call.f()), sources);
         CHECK(F.view()(0, 0, 0) == doctest::Approx(200));
         CHECK(F.view()(1, 0, 0) == doctest::Approx((10 + 20 + 31 + 1 + 3) / 5.0));
@@ -180,12 +181,14 @@ TEST_SUITE("attention/attention_call") {
         using call_type = host_attention_call<double, matrix_module<double>>;
         std::array const frames{frame_index{0}};
         auto const two = host_features<double>::allocate({2, 3, 4});
-        CHECK_THROWS_WITH_AS(call_type({}, frames, two, module), "host_attention_call: f is [2, 3, 4], expected [1, 3, 4]",
-                             shape_error);
+        CHECK_THROWS_WITH_AS(call_type({}, frames, two, module),
+                             "host_attention_call: f is [2, 3, 4], expected [1, 3, 4]", shape_error);
         auto const one = host_features<double>::allocate({1, 3, 4});
         call_type const call({}, frames, one, module);
-        CHECK_THROWS_WITH_AS(call.attend(one, {}), "host_attention_call::attend: sources is [0], expected [1]", shape_error);
-        CHECK_THROWS_WITH_AS(call.mix(one, one, {}, 1), "host_attention_call::mix: rows is [0], expected [1]", shape_error);
+        CHECK_THROWS_WITH_AS(call.attend(one, {}), "host_attention_call::attend: sources is [0], expected [1]",
+                             shape_error);
+        CHECK_THROWS_WITH_AS(call.mix(one, one, {}, 1), "host_attention_call::mix: rows is [0], expected [1]",
+                             shape_error);
     }
 
     TEST_CASE("one and two threads give the same bits") {

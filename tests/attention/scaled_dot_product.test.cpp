@@ -23,7 +23,7 @@ using blocks_of = std::vector<key_value_view<Real>>;
 template <class Real>
 constexpr double tolerance = sizeof(Real) == 4 ? 3e-6 : 1e-14;
 
-/// Eq. 1 as it stands, in double precision: all logits of a query, their greatest taken off, exponentials over their sum.
+/// Eq. 1 as it stands, in double precision: all logits of a query less the greatest, exponentials over their sum.
 template <class Real>
 stack<double, 2> naive(strided_view<Real const, 2> Q, blocks_of<Real> const& blocks, std::size_t heads) {
     stack<double, 2> F({Q.extent(0), Q.extent(1)});
@@ -99,7 +99,8 @@ TEST_SUITE("attention/scaled_dot_product") {
     }
 
     TEST_CASE_TEMPLATE("[GR eq. 1] logits are divided by the root of the channels of one head", Real, float, double) {
-        // d = 4: the product 2 ln 3 becomes the logit ln 3. Head 1 attends by its own channels, with weights 1/4 and 3/4.
+        // d = 4: the product 2 ln 3 becomes the logit ln 3. Head 1 attends by its own channels,
+        // with weights 1/4 and 3/4.
         stack<Real, 2> Q({1, 8});
         stack<Real, 2> K({2, 8});
         stack<Real, 2> V({2, 8});
@@ -126,16 +127,16 @@ TEST_SUITE("attention/scaled_dot_product") {
             std::size_t heads;
         };
         std::vector<shape> const shapes{
-            {1, {1}, 1, 1},           // the smallest
-            {3, {5}, 7, 7},           // one channel a head
-            {5, {1, 1, 1}, 6, 2},     // blocks of one token
-            {63, {255}, 8, 1},        // one short of a tile
-            {64, {256}, 8, 2},        // a tile
-            {65, {257}, 8, 4},        // one over
-            {130, {513}, 5, 1},       // several tiles and a rest
+            {1, {1}, 1, 1},                // the smallest
+            {3, {5}, 7, 7},                // one channel a head
+            {5, {1, 1, 1}, 6, 2},          // blocks of one token
+            {63, {255}, 8, 1},             // one short of a tile
+            {64, {256}, 8, 2},             // a tile
+            {65, {257}, 8, 4},             // one over
+            {130, {513}, 5, 1},            // several tiles and a rest
             {9, {300, 1, 17, 256}, 12, 3}, // ragged blocks
-            {4, {0, 3, 0}, 4, 1},     // blocks without tokens
-            {17, {40}, 40, 1}         // a head of SD's width
+            {4, {0, 3, 0}, 4, 1},          // blocks without tokens
+            {17, {40}, 40, 1}              // a head of SD's width
         };
         std::uint64_t seed = 0;
         for (auto const& s : shapes) {
@@ -206,8 +207,10 @@ TEST_SUITE("attention/scaled_dot_product") {
             return key_value_view<Real>{K.view().slice(begin, count), V.view().slice(begin, count)};
         };
         auto const whole = attention<Real>(Q, {{K, V}}, 2);
-        CHECK(largest_difference(attention<Real>(Q, {part(0, 7), part(7, 200), part(207, 93)}, 2), whole) < tolerance<Real>);
-        CHECK(largest_difference(attention<Real>(Q, {part(207, 93), part(0, 7), part(7, 200)}, 2), whole) < tolerance<Real>);
+        CHECK(largest_difference(attention<Real>(Q, {part(0, 7), part(7, 200), part(207, 93)}, 2), whole) <
+              tolerance<Real>);
+        CHECK(largest_difference(attention<Real>(Q, {part(207, 93), part(0, 7), part(7, 200)}, 2), whole) <
+              tolerance<Real>);
         // A cut between two runs of keys changes nothing at all.
         CHECK(largest_difference(attention<Real>(Q, {part(0, 256), part(256, 44)}, 2), whole) == 0);
     }
@@ -216,7 +219,8 @@ TEST_SUITE("attention/scaled_dot_product") {
         auto const Q = random_stack<Real, 2>({5, 4}, 1);
         auto const K = random_stack<Real, 2>({9, 4}, 2);
         auto const V = random_stack<Real, 2>({9, 4}, 3);
-        CHECK(largest_difference(attention<Real>(Q, {{K, V}, {K, V}}, 1), attention<Real>(Q, {{K, V}}, 1)) < tolerance<Real>);
+        CHECK(largest_difference(attention<Real>(Q, {{K, V}, {K, V}}, 1), attention<Real>(Q, {{K, V}}, 1)) <
+              tolerance<Real>);
     }
 
     TEST_CASE("a result is a mean of values") {
@@ -254,11 +258,11 @@ TEST_SUITE("attention/scaled_dot_product") {
             std::size_t size;
         };
         std::vector<layout> const layouts{
-            {{1, s_tokens}, 0, tokens * channels},                                 // channel-major
-            {{10, 1}, 3, tokens * 10 + 3},                                         // rows of a wider block
-            {{-10, 1}, 10 * (s_tokens - 1), tokens * 10},                          // rows from the last to the first
-            {{12, 2}, 1, tokens * 12 + 1},                                         // every other element
-            {{-6, -1}, s_tokens * 6 - 1, tokens * channels}                        // backwards
+            {{1, s_tokens}, 0, tokens * channels},          // channel-major
+            {{10, 1}, 3, tokens * 10 + 3},                  // rows of a wider block
+            {{-10, 1}, 10 * (s_tokens - 1), tokens * 10},   // rows from the last to the first
+            {{12, 2}, 1, tokens * 12 + 1},                  // every other element
+            {{-6, -1}, s_tokens * 6 - 1, tokens * channels} // backwards
         };
         for (auto const& in : layouts) {
             for (auto const& out : layouts) {
@@ -278,7 +282,8 @@ TEST_SUITE("attention/scaled_dot_product") {
                 auto const F = placed(3, out, nullptr);
                 scaled_dot_product(F, q, blocks, 2);
                 CHECK(largest_difference(F, expected) < tolerance<Real>);
-                auto const written = std::count_if(memory[3].begin(), memory[3].end(), [](Real x) { return !std::isnan(x); });
+                auto const written =
+                    std::count_if(memory[3].begin(), memory[3].end(), [](Real x) { return !std::isnan(x); });
                 CHECK(written == static_cast<std::ptrdiff_t>(tokens * channels));
             }
         }
@@ -315,8 +320,8 @@ TEST_SUITE("attention/scaled_dot_product") {
         stack<float, 2> const K({3, 4});
         stack<float, 2> const empty({0, 4});
         blocks_of<float> const good{{K, K}};
-        CHECK_THROWS_WITH_AS(scaled_dot_product(F.view(), K, good, 1), "scaled_dot_product: F is [2, 4], expected [3, 4]",
-                             shape_error);
+        CHECK_THROWS_WITH_AS(scaled_dot_product(F.view(), K, good, 1),
+                             "scaled_dot_product: F is [2, 4], expected [3, 4]", shape_error);
         CHECK_THROWS_WITH_AS(scaled_dot_product(F.view(), Q, good, 3),
                              "scaled_dot_product: heads is 3, expected a divisor of the 4 channels", value_error);
         CHECK_THROWS_WITH_AS(scaled_dot_product(F.view(), Q, good, 0),

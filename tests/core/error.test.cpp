@@ -43,8 +43,8 @@ TEST_SUITE("core/error") {
                              "draw: count is 5, expected 1 to 4", value_error);
         CHECK_THROWS_WITH_AS(require_value(false, "draw", "count", -1, "1 to 4"), "draw: count is -1, expected 1 to 4",
                              value_error);
-        CHECK_THROWS_WITH_AS(require_value(false, "draw", "frames", "empty", "one"), "draw: frames is empty, expected one",
-                             value_error);
+        CHECK_THROWS_WITH_AS(require_value(false, "draw", "frames", "empty", "one"),
+                             "draw: frames is empty, expected one", value_error);
         CHECK_THROWS_WITH_AS(require_value(false, "draw", "frames", std::string("so"), "one"),
                              "draw: frames is so, expected one", value_error);
         CHECK_THROWS_WITH_AS(require_value(false, "mix", "alpha", 0.5F, "1"), "mix: alpha is 0.500000, expected 1",

@@ -13,7 +13,9 @@ using namespace genrender;
 namespace {
 
 template <class A, class B>
-concept comparable_with = requires(A a, B b) { a == b; };
+concept comparable_with = requires(A a, B b) {
+    a == b;
+};
 
 template <class A, class B>
 concept mixes_with = std::convertible_to<A, B> || std::convertible_to<B, A> || comparable_with<A, B>;

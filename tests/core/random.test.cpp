@@ -81,7 +81,8 @@ TEST_SUITE("core/random") {
               block{0xA5055879, 0x8479534B, 0x4EF872E4, 0xEF7F8FE9});
         CHECK(random_bits(0x0123456789ABCDEF, random_stream::texture_noise, {1, 2, 3}) ==
               block{0x4313B35C, 0xF94A4C5C, 0x4EBC73D4, 0x0DB30AD0});
-        CHECK(random_bits(5, random_stream::test, {7, 11, 13}) == block{0x06EBFD53, 0x02378E48, 0x6C7D996A, 0xD69DA16D});
+        CHECK(random_bits(5, random_stream::test, {7, 11, 13}) ==
+              block{0x06EBFD53, 0x02378E48, 0x6C7D996A, 0xD69DA16D});
         CHECK(random_bits(1, random_stream::keyframes, {ones, 0, 0}) ==
               block{0xAEC914F1, 0x556C42B9, 0x3AAABAFA, 0x910D9EF1});
     }
@@ -89,7 +90,8 @@ TEST_SUITE("core/random") {
     TEST_CASE("a run of last year repeats: values of fixed addresses are pinned") {
         CHECK(uniform_value(42, random_stream::frame_noise, {0, 0, 0}) == 0.64461281744704491);
         CHECK(uniform_value(5, random_stream::test, {7, 11, 13}) == 0.027038414731775373);
-        CHECK(normal_value(42, random_stream::frame_noise, {0, 0, 0}) == doctest::Approx(-0.33663501897350584).epsilon(1e-14));
+        CHECK(normal_value(42, random_stream::frame_noise, {0, 0, 0}) ==
+              doctest::Approx(-0.33663501897350584).epsilon(1e-14));
         CHECK(normal_value(5, random_stream::test, {7, 11, 13}) == doctest::Approx(-2.3849719364374691).epsilon(1e-14));
         // floor(0.64461... * 10)
         CHECK(uniform_below(10, 42, random_stream::frame_noise, {0, 0, 0}) == 6);
@@ -188,21 +190,26 @@ TEST_SUITE("core/random") {
         constexpr std::uint32_t n = 40000;
         auto const base = [](std::uint32_t i) { return normal_value(3, random_stream::test, {i, 0, 0}); };
         auto const bound = 4 / std::sqrt(static_cast<double>(n));
-        CHECK(std::abs(correlation(n, base, [](std::uint32_t i) { return normal_value(3, random_stream::test, {i + 1, 0, 0}); })) <
-              bound);
-        CHECK(std::abs(correlation(n, base, [](std::uint32_t i) { return normal_value(3, random_stream::test, {i, 1, 0}); })) <
-              bound);
-        CHECK(std::abs(correlation(n, base, [](std::uint32_t i) { return normal_value(3, random_stream::test, {i, 0, 1}); })) <
-              bound);
-        CHECK(std::abs(correlation(n, base, [](std::uint32_t i) { return normal_value(4, random_stream::test, {i, 0, 0}); })) <
-              bound);
+        CHECK(std::abs(correlation(n, base, [](std::uint32_t i) {
+                  return normal_value(3, random_stream::test, {i + 1, 0, 0});
+              })) < bound);
+        CHECK(std::abs(correlation(n, base, [](std::uint32_t i) {
+                  return normal_value(3, random_stream::test, {i, 1, 0});
+              })) < bound);
+        CHECK(std::abs(correlation(n, base, [](std::uint32_t i) {
+                  return normal_value(3, random_stream::test, {i, 0, 1});
+              })) < bound);
+        CHECK(std::abs(correlation(n, base, [](std::uint32_t i) {
+                  return normal_value(4, random_stream::test, {i, 0, 0});
+              })) < bound);
         CHECK(std::abs(correlation(n, base, [](std::uint32_t i) {
                   return normal_value(3 + (std::uint64_t{1} << 32), random_stream::test, {i, 0, 0});
               })) < bound);
-        for (auto const stream : {random_stream::texture_noise, random_stream::background_noise, random_stream::frame_noise,
-                                  random_stream::keyframes, random_stream::weights}) {
-            CHECK(std::abs(correlation(n, base, [stream](std::uint32_t i) { return normal_value(3, stream, {i, 0, 0}); })) <
-                  bound);
+        for (auto const stream : {random_stream::texture_noise, random_stream::background_noise,
+                                  random_stream::frame_noise, random_stream::keyframes, random_stream::weights}) {
+            CHECK(std::abs(correlation(n, base, [stream](std::uint32_t i) {
+                      return normal_value(3, stream, {i, 0, 0});
+                  })) < bound);
         }
         CHECK(correlation(n, base, base) == doctest::Approx(1));
     }
@@ -241,14 +248,20 @@ TEST_SUITE("core/random") {
     }
 
     TEST_CASE("large bounds use all their range") {
-        // With 32 random bits and a remainder, the lowest third of this range would come up twice as often.
+        // 2^32 bits over 3/4 of as many numbers: 32 random bits alone would hit every third number twice as often, and a
+        // remainder the lowest third of them.
         constexpr std::uint32_t bound = 0xC0000000U;
         constexpr int n = 30000;
         int low = 0;
+        int every_third = 0;
         for (std::uint32_t i = 0; i < n; ++i) {
-            low += uniform_below(bound, 23, random_stream::test, {i, 0, 0}) < bound / 3 ? 1 : 0;
+            auto const value = uniform_below(bound, 23, random_stream::test, {i, 0, 0});
+            low += value < bound / 3 ? 1 : 0;
+            every_third += value % 3 == 0 ? 1 : 0;
         }
-        CHECK(std::abs(low - n / 3) < 4 * std::sqrt(n * 2.0 / 9));
+        auto const four_deviations = 4 * std::sqrt(n * 2.0 / 9);
+        CHECK(std::abs(low - n / 3) < four_deviations);
+        CHECK(std::abs(every_third - n / 3) < four_deviations);
         CHECK(uniform_below(1, 23, random_stream::test, {0, 0, 0}) == 0);
     }
 }

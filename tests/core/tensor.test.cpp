@@ -34,7 +34,8 @@ TEST_SUITE("core/tensor") {
             CHECK(view.stride(3) == 1);
             CHECK(view.stride(2) == static_cast<std::ptrdiff_t>(shape[3]));
             CHECK(view.stride(0) == static_cast<std::ptrdiff_t>(shape[1] * shape[2] * shape[3]));
-            CHECK(view(shape[0] - 1, shape[1] - 1, shape[2] - 1, shape[3] - 1) == static_cast<double>(values.size() - 1));
+            CHECK(view(shape[0] - 1, shape[1] - 1, shape[2] - 1, shape[3] - 1) ==
+                  static_cast<double>(values.size() - 1));
         }
     }
 

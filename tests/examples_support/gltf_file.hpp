@@ -58,8 +58,9 @@ private:
                 low = low < values.begin()[i] ? low : values.begin()[i];
                 high = high > values.begin()[i] ? high : values.begin()[i];
             }
-            lower += (axis > 0 ? ", " : "") + std::to_string(low);
-            upper += (axis > 0 ? ", " : "") + std::to_string(high);
+            auto const* const comma = axis > 0 ? ", " : "";
+            lower.append(comma).append(std::to_string(low));
+            upper.append(comma).append(std::to_string(high));
         }
         return ", \"min\": [" + lower + "], \"max\": [" + upper + "]";
     }

@@ -28,7 +28,9 @@ bool are_different(std::vector<std::uint32_t> const& values) {
 }
 
 keyframe_settings uniform(std::size_t m, std::uint64_t seed = 0) { return {m, keyframe_drawing::uniform, {}, seed}; }
-keyframe_settings stratified(std::size_t m, std::uint64_t seed = 0) { return {m, keyframe_drawing::stratified, {}, seed}; }
+keyframe_settings stratified(std::size_t m, std::uint64_t seed = 0) {
+    return {m, keyframe_drawing::stratified, {}, seed};
+}
 
 } // namespace
 
@@ -145,7 +147,7 @@ TEST_SUITE("keyframes/draw_keyframes") {
     }
 
     TEST_CASE("steps and draws of one step are independent") {
-        // The first keyframe of a step and of the next, and the first and the parity of the second: correlations near 0.
+        // The correlation of the first keyframe of a step with that of the next.
         constexpr std::size_t steps = 5000;
         double next = 0;
         for (std::size_t step = 0; step < steps; ++step) {
@@ -190,8 +192,8 @@ TEST_SUITE("keyframes/draw_keyframes") {
                              "draw_keyframes: count is 5, expected 1 to the animation's 4 frames", value_error);
         CHECK_THROWS_WITH_AS(draw_keyframes(uniform(0), 4, 0),
                              "draw_keyframes: count is 0, expected 1 to the animation's 4 frames", value_error);
-        CHECK_THROWS_WITH_AS(draw_keyframes({}, 0, 0), "draw_keyframes: count is 4, expected 1 to the animation's 0 frames",
-                             value_error);
+        CHECK_THROWS_WITH_AS(draw_keyframes({}, 0, 0),
+                             "draw_keyframes: count is 4, expected 1 to the animation's 0 frames", value_error);
         auto const fixed = [](std::vector<frame_index> frames) {
             return keyframe_settings{4, keyframe_drawing::fixed, std::move(frames), 0};
         };

@@ -61,8 +61,8 @@ TEST_SUITE("keyframes/feature_bank") {
 
     TEST_CASE("places that do not exist are refused with a sentence") {
         feature_bank<int> bank(3, 2);
-        CHECK_THROWS_WITH_AS(bank.find({{3}, 0}), "feature_bank: place is site 3 branch 0, expected 3 sites with 2 branches",
-                             value_error);
+        CHECK_THROWS_WITH_AS(bank.find({{3}, 0}),
+                             "feature_bank: place is site 3 branch 0, expected 3 sites with 2 branches", value_error);
         CHECK_THROWS_WITH_AS(bank.put({{0}, 2}, {}),
                              "feature_bank: place is site 0 branch 2, expected 3 sites with 2 branches", value_error);
         CHECK_THROWS_AS(bank.find({{0xFFFFFFFFU}, 0xFFFFFFFFU}), value_error);

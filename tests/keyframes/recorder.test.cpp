@@ -32,7 +32,8 @@ bool always(attention_place) { return true; }
 bool never(attention_place) { return false; }
 
 bool equal_bits(features const& a, features const& b) {
-    return a.extents() == b.extents() && std::equal(a.view().data(), a.view().data() + a.view().size(), b.view().data());
+    return a.extents() == b.extents() &&
+           std::equal(a.view().data(), a.view().data() + a.view().size(), b.view().data());
 }
 
 /// Features that are contiguous and the handle's own.
@@ -193,7 +194,8 @@ TEST_SUITE("keyframes/recorder") {
         feature_bank<features> bank(12, 2);
         recorder<features> const pass(bank, always);
         threaded_loop{4}(24, [&](std::size_t at) {
-            call_type call({{static_cast<std::uint32_t>(at / 2)}, static_cast<std::uint32_t>(at % 2)}, drawn, input(at), module);
+            call_type call({{static_cast<std::uint32_t>(at / 2)}, static_cast<std::uint32_t>(at % 2)}, drawn, input(at),
+                           module);
             pass(call);
         });
         CHECK(module.keys == 24 * keyframes);

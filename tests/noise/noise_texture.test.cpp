@@ -53,8 +53,8 @@ TEST_SUITE("noise/noise_texture") {
 
     TEST_CASE("no two addresses meet up to the ends of their ranges") {
         noise_texture const z_UV{1};
-        std::vector<std::uint32_t> const objects{0,       1,       2,       4095,    4096,   4097,
-                                                 1U << 23, 1U << 24, (1U << 24) + 1, 1U << 31, 0xFFFFFFFFU};
+        std::vector<std::uint32_t> const objects{
+            0, 1, 2, 4095, 4096, 4097, 1U << 23, 1U << 24, (1U << 24) + 1, 1U << 31, 0xFFFFFFFFU};
         std::set<double> values;
         std::size_t count = 0;
         for (auto const object : objects) {

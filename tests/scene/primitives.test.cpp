@@ -35,8 +35,9 @@ double area(mesh const& surface) {
 
 TEST_SUITE("scene/primitives") {
     TEST_CASE("no two places of a primitive share a texel and every UV lies on the texture") {
-        for (auto const& [name, surface] : all_primitives()) {
-            CAPTURE(name);
+        for (auto const& primitive : all_primitives()) {
+            CAPTURE(primitive.first);
+            auto const& surface = primitive.second;
             CHECK_NOTHROW(validate(surface));
             auto const overlap = count_uv_overlap(surface, 256);
             CHECK(overlap.overlapping == 0);
@@ -51,8 +52,9 @@ TEST_SUITE("scene/primitives") {
     }
 
     TEST_CASE("normals have unit length and agree with the winding") {
-        for (auto const& [name, surface] : all_primitives()) {
-            CAPTURE(name);
+        for (auto const& primitive : all_primitives()) {
+            CAPTURE(primitive.first);
+            auto const& surface = primitive.second;
             REQUIRE(surface.normals.size() == surface.positions.size());
             for (auto const& t : surface.triangles) {
                 auto const& p = surface.positions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 1, 2] The processor that leaves a network as it is: every frame attends to itself.
+// [GR eq. 2] The processor that leaves a network as it is: every frame attends to itself.
 #pragma once
 
 #include <genrender/attention/attention_call.hpp>

@@ -75,9 +75,9 @@ void attend_to_run(Output F, matrix_map<Real const> Q, matrix_map<Real const> K,
 } // namespace detail
 
 /// Writes F [tokens, channels]: multi-head attention of Q [tokens, channels] over the tokens of all `blocks` together, in
-/// which head h owns channels [h d, (h + 1) d), d = channels / heads. Exact softmax, safe against overflow; blocks are read
-/// where they lie. F shares no memory with Q, K or V. Throws shape_error if F, K or V do not fit Q, value_error if heads do not
-/// divide the channels or no block holds a token.
+/// which head h owns channels [h d, (h + 1) d), d = channels / heads. Exact softmax, safe against overflow; blocks are
+/// read where they lie. F shares no memory with Q, K or V. Throws shape_error if F, K or V do not fit Q, value_error if
+/// heads do not divide the channels or no block holds a token.
 template <class Real>
 void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
                         std::type_identity_t<std::span<key_value_view<Real> const>> blocks, std::size_t heads) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR alg. 1] The second way in: what a static graph takes as extra inputs and gives as extra outputs at each site.
+// [GR alg. 1: Phi as a static graph] The second way in: a graph's extra inputs and outputs at each site.
 #pragma once
 
 #include <genrender/attention/attention_processor.hpp>
@@ -22,7 +22,7 @@ namespace genrender {
 template <class Features, class Real>
 struct feature_inputs {
     bool attends_to_stack = false;           ///< eq. 3: keys and values of all frames of the stack
-    Features const* f_KF = nullptr;          ///< eq. 5: tokens to join to each frame's own, [keyframes, tokens, channels]
+    Features const* f_KF = nullptr;          ///< eq. 5: joined to each frame's own f, [keyframes, tokens, channels]
     std::vector<std::optional<std::size_t>> left_out; ///< per frame, the keyframe of f_KF that it does not join
     Features const* F_KF = nullptr;          ///< eq. 6: F_bar^i = rows[i] * F_KF, by gather or by mix_rows
     std::vector<sparse_rows<Real>> rows;     ///< per frame, the plan; empty without F_KF
@@ -46,8 +46,8 @@ feature_inputs<Features, Real> inputs_at(recorder<Features> const& pass, attenti
     return inputs;
 }
 
-/// The extra inputs of the injected pass for `frames`. Throws value_error if the keyframe pass ran with callbacks, which keep
-/// no f_KF.
+/// The extra inputs of the injected pass for `frames`. Throws value_error if the keyframe pass ran with callbacks,
+/// which keep no f_KF.
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(injector<Features, Real> const& pass, attention_place place,
                                          std::span<frame_index const> frames) {
@@ -66,8 +66,8 @@ feature_inputs<Features, Real> inputs_at(injector<Features, Real> const& pass, a
     return inputs;
 }
 
-/// Hands the graph's extra outputs f and F [frames, tokens, channels] of a place to the pass that asked for them. The handles
-/// are kept until the step ends.
+/// Hands the graph's extra outputs f and F [frames, tokens, channels] of a place to the pass that asked for them. The
+/// handles are kept until the step ends.
 template <class Features>
 void record_features(recorder<Features> const& pass, attention_place place, std::type_identity_t<Features> f,
                      std::type_identity_t<Features> F) {
@@ -87,29 +87,30 @@ void record_features(injector<Features, Real> const&, attention_place, std::type
 /// the contract of attention_processor without a callback. Both functions are found in the namespace of the processor.
 ///
 /// expression                               | type                   | meaning
-/// -----------------------------------------|------------------------|----------------------------------------------------
+/// -----------------------------------------|------------------------|------------------------------------------------
 /// `inputs_at<Features, Real>(processor,`   | feature_inputs         | what the module at `place` is given beside its
 /// `    place, frames)`                     |   `<Features, Real>`   | weights, for the stack of these frames
-/// `record_features(processor, place, f, F)`| void                   | takes input and output of the module for all frames
-///                                          |                        | of the stack; called after the graph, for the places
-///                                          |                        | whose inputs say `is_recorded`
+/// `record_features(processor, place, f, F)`| void                   | takes input and output of the module for all
+///                                          |                        | frames of the stack; called after the graph, for
+///                                          |                        | the places whose inputs say `is_recorded`
 ///
-/// These the compiler cannot check, and a model owes them: the inputs of all places can be asked for before the graph starts,
-/// in any order, for different frames on several threads; a graph that honours them puts out the F that the processor returns
-/// where it is called back, up to rounding.
-/// It does not require that one type serves both forms; those of the library do.
+/// These the compiler cannot check, and a model owes them: the inputs of all places can be asked for before the graph
+/// starts, in any order, for different frames on several threads; a graph that honours them puts out the F that the
+/// processor returns where it is called back, up to rounding. It does not require that one type serves both forms;
+/// those of the library do.
 ///
-/// See also: attention_processor, the same contract for engines that call back; plain_attention, recorder and injector, which
-/// are models.
+/// See also: attention_processor, the same contract for engines that call back; plain_attention, recorder and injector,
+/// which are models.
 template <class Processor, class Features, class Real>
 concept feature_io_processor =
-    requires(Processor const& processor, attention_place place, std::span<frame_index const> frames, Features const& f) {
+    requires(Processor const& processor, attention_place place, std::span<frame_index const> frames,
+             Features const& f) {
         { inputs_at<Features, Real>(processor, place, frames) } -> std::same_as<feature_inputs<Features, Real>>;
         record_features(processor, place, f, f);
     };
 
-/// The least that a feature_io_processor is, for checking denoisers; never run. The archetype of both ways in is one, so that
-/// the concept denoiser also holds for engines that ask for a feature_io_processor.
+/// The least that a feature_io_processor is, for checking denoisers; never run. The archetype of both ways in is one,
+/// so that the concept denoiser also holds for engines that ask for a feature_io_processor.
 using feature_io_processor_archetype = attention_processor_archetype;
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(feature_io_processor_archetype const&, attention_place,

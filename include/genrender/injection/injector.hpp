@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR alg. 1: Phi(z^i, D^i, c, f_KF, F_bar^i)] The processor of the injected pass: eq. 5 before attention, eq. 6 after it.
+// [GR alg. 1: Phi(z^i, D^i, c, f_KF, F_bar^i)] The processor of the injected pass: eq. 5, attention, eq. 6.
 #pragma once
 
 #include <genrender/attention/plain_attention.hpp>
@@ -24,7 +24,8 @@ struct injection_settings {
     bool post_attention = true; ///< eq. 6; without it F_out = F_hat
     /// alpha of eq. 6 at a site.
     std::function<Real(site_index)> alpha = [](site_index) { return Real(0.7); };
-    /// A frame that is itself a keyframe finds its tokens twice in [f^i, f_KF], as eq. 5 has it; false drops the second copy.
+    /// A frame that is itself a keyframe finds its tokens twice in [f^i, f_KF], as eq. 5 has it; false drops the second
+    /// copy.
     bool keeps_own_copy = true;
 };
 
@@ -40,8 +41,8 @@ public:
              injection_settings<Real> settings)
         : bank_(&bank), keyframes_(keyframes), rows_(std::move(rows)), settings_(std::move(settings)) {}
 
-    /// F_out of eq. 6, where F_hat attends over the sources of eq. 5. Throws value_error if the keyframe pass ran as a static
-    /// graph, which gives no K_KF.
+    /// F_out of eq. 6, where F_hat attends over the sources of eq. 5. Throws value_error if the keyframe pass ran as a
+    /// static graph, which gives no K_KF.
     template <attention_call Call>
     Features operator()(Call& call) const {
         auto const frames = call.frames();
@@ -66,8 +67,9 @@ public:
         return call.mix(F_hat, *kept->F_KF, rows, settings_.alpha(call.place().site));
     }
 
-    /// f_KF that frames join to their own features at a place (eq. 5); null where nothing is injected. For engines whose graph
-    /// is static. Throws value_error if the keyframe pass ran with callbacks, which keep K_KF and V_KF instead.
+    /// f_KF that frames join to their own features at a place (eq. 5); null where nothing is injected. For engines
+    /// whose graph is static. Throws value_error if the keyframe pass ran with callbacks, which keep K_KF and V_KF
+    /// instead.
     Features const* joined_features(attention_place place) const {
         auto const* const kept = bank_->find(place);
         if (kept == nullptr || !settings_.pre_attention) {

@@ -6,6 +6,7 @@
 #include <genrender/models/conv2d.hpp>
 #include <genrender/models/unet_encoder.hpp>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>

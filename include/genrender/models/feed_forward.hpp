@@ -2,6 +2,7 @@
 // The gated feed-forward layer of a transformer block: GEGLU (Shazeer 2020).
 #pragma once
 
+#include <genrender/core/stack.hpp>
 #include <genrender/models/activation.hpp>
 #include <genrender/models/linear.hpp>
 

@@ -2,6 +2,7 @@
 // The steps between levels of the UNet: a convolution of stride 2 down, nearest neighbours and a convolution up.
 #pragma once
 
+#include <genrender/core/stack.hpp>
 #include <genrender/models/conv2d.hpp>
 #include <genrender/models/feature_maps.hpp>
 #include <genrender/models/forward_pass.hpp>

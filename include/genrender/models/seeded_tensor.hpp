@@ -42,7 +42,7 @@ inline float seeded_gain(std::string_view name) {
         rule{"attn1.to_q", 2.0f},        rule{"attn1.to_k", 2.0f}, // attention that picks some tokens, not the mean of all
         rule{"attn2.to_out", 3.0f},      rule{"controlnet_cond_embedding", 1.5f},
         rule{"time_emb_proj", 0.3f},     rule{"conv_shortcut", 0.7f},
-        rule{"conv_out.weight", 1.1f},
+        rule{"conv_out.weight", 0.95f},
     };
     for (auto const& [part, gain] : rules) {
         if (name.find(part) != std::string_view::npos) {
@@ -123,7 +123,7 @@ inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view net
             auto const out = pair / inputs;
             auto const in = pair % inputs;
             auto const band = is_last ? out / means : 0;
-            auto const strength = scale * (is_first  ? (in < inputs / 4 ? 4.0f : 0.4f) * detail::seeded_palette(seed, in, out)
+            auto const strength = scale * (is_first  ? (in < inputs / 4 ? 3.5f : 0.35f) * detail::seeded_palette(seed, in, out)
                                            : is_last ? detail::seeded_palette(seed, out % means, in)
                                                      : 1.3f * normal(count + pair));
             auto const blur = is_first || is_last ? 0.5f : 1.0f;

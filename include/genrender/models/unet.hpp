@@ -7,6 +7,7 @@
 #include <genrender/models/group_norm.hpp>
 #include <genrender/models/unet_encoder.hpp>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>

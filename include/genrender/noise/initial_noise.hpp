@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.3, alg. 1] Initial latents before scaling: UV noise, and the paper's ablations of it.
+// [GR sec. 3.3, alg. 1: z_T] Initial latents before scaling: UV noise, and the paper's ablations of it.
 #pragma once
 
 #include <genrender/core/parallel.hpp>
@@ -39,9 +39,10 @@ struct noise_settings {
 };
 
 /// Writes noise of N(0, 1) into z [frames, channels, height, width]; `frames[i]` is the frame that entry i shows. Under
-/// noise_kind::uv, z = pi_UV(z_UV): a latent pixel reads the texel of its representative sample. Each frame depends on its own
-/// maps alone, and with T = 0 on the T that all frames of the maps give its objects. Throws shape_error if `frames` does not count
-/// the entries of z, value_error if a frame is not in the maps, the latents do not divide them or a UV is not finite.
+/// noise_kind::uv, z = pi_UV(z_UV): a latent pixel reads the texel of its representative sample. Each frame depends on
+/// its own maps alone, and with T = 0 on the T that all frames of the maps give its objects. Throws shape_error if
+/// `frames` does not count the entries of z, value_error if a frame is not in the maps, the latents do not divide them
+/// or a UV is not finite.
 template <class Real, parallel_loop Loop = sequential_loop>
 void initial_noise(strided_view<Real, 4> z, uv_maps_view const& maps, std::span<frame_index const> frames,
                    noise_settings const& settings, Loop const& loop = {}) {

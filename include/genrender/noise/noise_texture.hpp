@@ -16,7 +16,7 @@ struct noise_texture {
 
     /// The value of N(0, 1) at a texel and channel, for rows and columns below 2^20 and channels below 2^24.
     double operator()(texel const& t, std::uint32_t channel) const {
-        // Rows and columns stay below 2^20 and channels below 2^24, so the object's 32 bits fill what is left of the address.
+        // Rows and columns stay below 2^20 and channels below 2^24: the object's 32 bits fill the rest of the address.
         auto const object = t.object.value;
         return normal_value(seed, random_stream::texture_noise,
                             {t.row | object << 20, t.column | (object >> 12) << 20, channel | (object >> 24) << 24});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR alg. 1] The body of the loop: a denoiser of single frames becomes a denoiser of the whole animation.
+// [GR alg. 1: the body of the loop] A denoiser of single frames becomes a denoiser of the whole animation.
 #pragma once
 
 #include <genrender/attention/plain_attention.hpp>

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1] The shortest whole program: a scene, a denoiser, consistent latents.
+#include "scenes/camera_rotation.hpp"
+
+#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/models/reference_network.hpp>
+
+#include <exception>
+
+// readme:begin first_render
+#include <genrender/genrender.hpp>
+
+#include <iostream>
+
+/// Consistent latents of all frames of an animation, for your decoder.
+template <genrender::denoiser Phi>
+genrender::latents<float> stylise(Phi const& your_network, genrender::uv_maps const& UV) {
+    genrender::render_settings<float> settings;
+    settings.steps = 4;
+    settings.keyframes.count = 2;
+    settings.noise.seed = 7;
+
+    genrender::render_report report;
+    auto const z = genrender::render(your_network, to_uv_view(UV), settings, report, [](genrender::progress const& now) {
+        std::cerr << "step " << now.step + 1 << ", " << now.remaining_seconds << " s left\r";
+        return true; // false ends the run
+    });
+    for (auto const& [grid, coverage] : report.coverage()) {
+        std::cout << grid.height << "x" << grid.width << ": keyframes cover " << 100 * coverage.share() << " %\n";
+    }
+    return z;
+}
+// readme:end
+
+int main() {
+    try {
+        auto const guidance = rasterize(genrender::scenes::camera_rotation(4), {128, 128});
+        auto const hint = cell_means(sequence_inverse_depth(guidance.depth), {32, 32});
+        auto const network = genrender::reference_network<float>::seeded(to_view(hint), "marble", 7);
+        auto const z = stylise(network, guidance.uv);
+        return z.shape()[0] == 4 ? 0 : 1;
+    } catch (std::exception const& error) {
+        std::cerr << error.what() << "\n";
+        return 1;
+    }
+}
