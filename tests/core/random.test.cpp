@@ -248,8 +248,8 @@ TEST_SUITE("core/random") {
     }
 
     TEST_CASE("large bounds use all their range") {
-        // 2^32 bits over 3/4 of as many numbers: 32 random bits alone would hit every third number twice as often, and a
-        // remainder the lowest third of them.
+        // 2^32 bits over 3/4 of as many numbers: 32 random bits alone would hit every third number twice as often, and
+        // a remainder the lowest third of them.
         constexpr std::uint32_t bound = 0xC0000000U;
         constexpr int n = 30000;
         int low = 0;

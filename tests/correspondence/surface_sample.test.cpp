@@ -74,7 +74,7 @@ TEST_SUITE("correspondence/surface_sample") {
     TEST_CASE("grids that do not divide the maps are refused by name") {
         auto const maps = full_frame();
         CHECK_THROWS_WITH_AS(representative_sample(to_uv_view(maps), {0}, {3, 2}, {0}),
-                             "representative_sample: grid is [3, 2], expected extents that divide the UV maps' [4, 4]",
+                             "representative_sample: grid is [3, 2], expected extents that divide the maps' [4, 4]",
                              value_error);
     }
 }

@@ -50,6 +50,17 @@ TEST_SUITE("correspondence/texel_grid") {
             CHECK(!map.token_at({1}, *map.point_at({0}, {t})).has_value());
         }
     }
+    TEST_CASE("objects whose numbers differ in their highest bits alone never correspond") {
+        auto maps = moving_strip();
+        for (std::size_t column = 0; column < 4; ++column) {
+            maps.object(0, 0, column) = 3;
+            maps.object(1, 0, column) = 3 + (1U << 31);
+        }
+        texel_grid const map(to_uv_view(maps), {1, 4}, {.T = 8});
+        for (std::uint32_t t = 0; t < 4; ++t) {
+            CHECK(!map.token_at({1}, *map.point_at({0}, {t})).has_value());
+        }
+    }
     TEST_CASE("too low a T merges points and too high a T lets nothing meet") {
         auto maps = moving_strip();
         texel_grid const coarse(to_uv_view(maps), {1, 4}, {.T = 1});

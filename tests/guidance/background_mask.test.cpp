@@ -33,7 +33,7 @@ TEST_SUITE("guidance/background_mask") {
     TEST_CASE("a grid that does not divide the maps is refused by name") {
         uv_maps const maps(1, {16, 16});
         CHECK_THROWS_WITH_AS(background_mask(to_uv_view(maps), {3, 4}),
-                             "background_mask: grid is [3, 4], expected extents that divide the UV maps' [16, 16]",
+                             "background_mask: grid is [3, 4], expected extents that divide the maps' [16, 16]",
                              value_error);
         CHECK_THROWS_AS(background_mask(to_uv_view(maps), {4, 5}), value_error);
         CHECK_THROWS_AS(background_mask(to_uv_view(maps), {0, 4}), value_error);

@@ -13,7 +13,7 @@ TEST_SUITE("guidance/cell_extents") {
     }
     TEST_CASE("extents that do not divide are refused in the caller's name") {
         CHECK_THROWS_WITH_AS(cell_extents("here", {512, 256}, {64, 60}),
-                             "here: grid is [64, 60], expected extents that divide the UV maps' [512, 256]", value_error);
+                             "here: grid is [64, 60], expected extents that divide the maps' [512, 256]", value_error);
         CHECK_THROWS_AS(cell_extents("here", {512, 256}, {0, 64}), value_error);
         CHECK_THROWS_AS(cell_extents("here", {0, 256}, {1, 64}), value_error);
     }

@@ -74,4 +74,15 @@ TEST_SUITE("guidance/depth_maps") {
         CHECK_THROWS_WITH_AS(sequence_inverse_depth(maps),
                              "sequence_inverse_depth: maps.depth is [1, 1, 2], expected [1, 2, 2]", shape_error);
     }
+    TEST_CASE("cell means are the means of the pixels under a cell") {
+        auto map = tensor<float, 3>::from_shape({1, 2, 4});
+        for (std::size_t e = 0; e < 8; ++e) {
+            map.data()[e] = static_cast<float>(e);
+        }
+        auto const means = cell_means(map, {1, 2});
+        CHECK(means(0, 0, 0) == doctest::Approx((0 + 1 + 4 + 5) / 4.0));
+        CHECK(means(0, 0, 1) == doctest::Approx((2 + 3 + 6 + 7) / 4.0));
+        CHECK_THROWS_WITH_AS(cell_means(map, {2, 3}),
+                             "cell_means: grid is [2, 3], expected extents that divide the maps' [2, 4]", value_error);
+    }
 }

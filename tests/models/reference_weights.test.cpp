@@ -1,48 +1,80 @@
 // SPDX-License-Identifier: MIT
-// Tests of all parameters in one file.
+// One file holds the weights of all three networks.
 #include <genrender/models/reference_weights.hpp>
 
-#include "small_networks.hpp"
-
+#include <genrender/attention/plain_attention.hpp>
 #include <genrender/models/reference_network.hpp>
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
 using namespace genrender;
-using namespace genrender::testing;
+
+namespace {
+
+/// A file in the system's folder for such, removed at the end.
+struct scratch_file {
+    std::string path;
+    explicit scratch_file(char const* name)
+        : path((std::filesystem::temp_directory_path() / ("genrender_" + std::string(name))).string()) {}
+    scratch_file(scratch_file const&) = delete;
+    scratch_file& operator=(scratch_file const&) = delete;
+    ~scratch_file() { std::remove(path.c_str()); }
+};
+
+stack<float, 4> estimate(reference_network<float> const& network) {
+    std::array const frames{frame_index{0}};
+    stack<float, 4> z({1, network.latent_channels(), network.latent_grid().height, network.latent_grid().width});
+    for (std::size_t e = 0; e < z.size(); ++e) {
+        z.data()[e] = static_cast<float>(normal_value(1, random_stream::test, {static_cast<std::uint32_t>(e), 0, 0}));
+    }
+    stack<float, 4> x0(z.extents());
+    plain_attention const plain;
+    network(x0.view(), z.view(), 1.0f, frames, plain);
+    return x0;
+}
+
+reference_network<float> network_of(reference_weights<float>& source, stack<float, 3> const& hint) {
+    unet_config const config;
+    return {config, source.unet, source.controlnet, source.conditioning(config, hint.view(), "dots")};
+}
+
+} // namespace
 
 TEST_SUITE("models/reference_weights") {
-    TEST_CASE_TEMPLATE("a network from a saved file is the seeded one to the bit", Real, float, double) {
-        temporary_file const file("all.safetensors");
-        auto const config = small_config();
-        stack<float, 3> depth({1, 8, 8});
-        depth(0, 3, 3) = 1;
-        plain_attention const plain;
-        auto const z = random_stack<Real, 4>({1, 4, 4, 4}, 1);
-        auto const estimate = [&](reference_weights<Real>& all) {
-            auto conditioning = all.conditioning(config, depth, "dots");
-            reference_network<Real> const network(config, all.unet, all.controlnet, std::move(conditioning));
-            stack<Real, 4> x0(z.extents());
-            network(x0.view(), z.view(), Real(2), std::array{frame_index{0}}, plain);
-            return x0;
-        };
-        auto seeded = reference_weights<Real>::seeded(5);
-        auto const expected = estimate(seeded);
-        seeded.save(file.path());
-        auto loaded = reference_weights<Real>::from_file(file.path());
-        auto const found = estimate(loaded);
-        for (std::size_t e = 0; e < z.size(); ++e) {
-            CHECK(found.data()[e] == expected.data()[e]);
+    TEST_CASE("weights that were saved give the same estimates to the bit") {
+        scratch_file const file("reference_weights.safetensors");
+        stack<float, 3> hint({1, 16, 16});
+        hint(0, 3, 4) = 0.5f;
+        auto seeded = reference_weights<float>::seeded(3);
+        auto const expected = estimate(network_of(seeded, hint));
+        seeded.save(file.path);
+        auto loaded = reference_weights<float>::from_file(file.path);
+        auto const found = estimate(network_of(loaded, hint));
+        for (std::size_t e = 0; e < expected.size(); ++e) {
+            REQUIRE(found.data()[e] == expected.data()[e]);
         }
     }
-
-    TEST_CASE("a tensor of none of the networks is named") {
-        temporary_file const file("foreign.safetensors");
-        std::vector<float> const one{1.0f};
-        write_safetensors(file.path(), {{"unet.a", {{1}, one}}, {"vae.a", {{1}, one}}});
-        CHECK_THROWS_WITH_AS(
-            reference_weights<float>::from_file(file.path()),
-            (file.path() + ": tensor vae.a belongs to no network, expected names that begin with unet., controlnet. or prompt.").c_str(),
-            file_error);
+    TEST_CASE("a tensor of no network and a network that is missing are named") {
+        scratch_file const file("stray.safetensors");
+        std::array const one{1.0f};
+        write_safetensors(file.path, {{"vae.scale", {{1}, one}}}, safetensors_storage::f32);
+        CHECK_THROWS_WITH_AS(reference_weights<float>::from_file(file.path),
+                             (file.path + ": tensor vae.scale belongs to no network, expected names that begin with unet., "
+                                          "controlnet. or prompt.")
+                                 .c_str(),
+                             file_error);
+        write_safetensors(file.path, {{"unet.odd", {{1}, one}}}, safetensors_storage::f32);
+        auto loaded = reference_weights<float>::from_file(file.path);
+        stack<float, 3> const hint({1, 16, 16});
+        CHECK_THROWS_WITH_AS(network_of(loaded, hint),
+                             (file.path + ": there is no tensor prompt.token_embedding.weight, expected one of shape [9, 48]")
+                                 .c_str(),
+                             file_error);
     }
 }

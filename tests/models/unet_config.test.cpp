@@ -27,8 +27,8 @@ TEST_SUITE("models/unet_config") {
               "unet_config: level_has_attention.size() is 1, expected one entry for each of block_out_channels");
         check([](auto& c) { c.attention_head_dim = {1, 2}; },
               "unet_config: attention_head_dim.size() is 2, expected one entry for each of block_out_channels");
-        check([](auto& c) { c.attention_head_dim = {1, 3, 1}; },
-              "unet_config: attention_head_dim is 3, expected divisors of block_out_channels of their level");
+        check([](auto& c) { c.attention_head_dim = {1, 5, 1}; },
+              "unet_config: attention_head_dim is 5, expected divisors of block_out_channels of their level");
         check([](auto& c) { c.norm_num_groups = 7; },
               "unet_config: block_out_channels is 32, expected multiples of norm_num_groups");
         check([](auto& c) { c.norm_num_groups = 0; }, "unet_config: a count is 0, expected above 0");

@@ -384,10 +384,10 @@ TEST_SUITE("noise/initial_noise") {
     TEST_CASE("shapes and frames that do not fit are refused with a sentence") {
         uv_maps const maps(2, {16, 16});
         CHECK_THROWS_WITH_AS(noise_of(maps, 1, {5, 4}, {{0}}, {}),
-                             "initial_noise: grid is [5, 4], expected extents that divide the UV maps' [16, 16]",
+                             "initial_noise: grid is [5, 4], expected extents that divide the maps' [16, 16]",
                              value_error);
         CHECK_THROWS_WITH_AS(noise_of(maps, 1, {32, 16}, {{0}}, {}),
-                             "initial_noise: grid is [32, 16], expected extents that divide the UV maps' [16, 16]",
+                             "initial_noise: grid is [32, 16], expected extents that divide the maps' [16, 16]",
                              value_error);
         CHECK_THROWS_WITH_AS(noise_of(maps, 1, {8, 8}, {{0}, {7}}, {}),
                              "initial_noise: frames is 7, expected frames of the UV maps", value_error);

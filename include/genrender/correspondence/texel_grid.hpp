@@ -96,29 +96,34 @@ private:
         return std::clamp(static_cast<double>(std::min(cell.height, cell.width)) / 2, 1.0, 4.0);
     }
 
-    static std::uint64_t key_of(texel const& t) {
-        return std::uint64_t{t.object.value} << 40 | std::uint64_t{t.row} << 20 | t.column;
-    }
+    /// Spreads texels over buckets; rows and columns stay below 2^20.
+    struct texel_hash {
+        std::size_t operator()(texel const& t) const {
+            auto const place = std::uint64_t{t.row} << 20 | t.column;
+            return static_cast<std::size_t>((place ^ std::uint64_t{t.object.value} << 40) * 0x9E3779B97F4A7C15U >> 8) ^
+                   (t.object.value >> 24);
+        }
+    };
 
     /// Notes which texel each token reads and numbers those texels.
     template <class Loop>
     void number_slots(uv_maps_view const& maps, Loop const& loop) {
         auto const tokens = grid_.size();
-        std::vector<std::uint64_t> keys(frames_ * tokens);
+        std::vector<texel> texels(frames_ * tokens);
         read_.assign(frames_ * tokens, not_covered);
         loop(frames_, [&](std::size_t i) {
             for (std::size_t t = 0; t < tokens; ++t) {
                 auto const sample = representative_sample(maps, {static_cast<std::uint32_t>(i)}, grid_,
                                                           {static_cast<std::uint32_t>(t)});
                 if (sample) {
-                    keys[i * tokens + t] = key_of(texel_of(*sample, resolution_));
+                    texels[i * tokens + t] = texel_of(*sample, resolution_);
                     read_[i * tokens + t] = 0;
                 }
             }
         });
         for (std::size_t entry = 0; entry < read_.size(); ++entry) {
             if (read_[entry] != not_covered) {
-                read_[entry] = slots_.try_emplace(keys[entry], static_cast<std::uint32_t>(slots_.size())).first->second;
+                read_[entry] = slots_.try_emplace(texels[entry], static_cast<std::uint32_t>(slots_.size())).first->second;
             }
         }
         slot_count_ = slots_.size();
@@ -148,7 +153,7 @@ private:
                             continue;
                         }
                         texel const t{own.object, static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(c)};
-                        auto const slot = slots_.find(key_of(t));
+                        auto const slot = slots_.find(t);
                         if (slot != slots_.end()) {
                             auto const is_inside = down == 0 && right == 0;
                             found.offer(slot->second, token, distance_to_centre(sample, t), is_inside,
@@ -176,7 +181,7 @@ private:
     std::size_t slot_count_ = 0;
     std::vector<std::uint32_t> read_; // [frames, tokens], slot or not_covered
     std::vector<visible_texels> visible_;
-    std::unordered_map<std::uint64_t, std::uint32_t> slots_; // only while compiling
+    std::unordered_map<texel, std::uint32_t, texel_hash> slots_; // only while compiling
 };
 
 } // namespace genrender

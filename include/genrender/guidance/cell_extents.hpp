@@ -16,7 +16,7 @@ inline grid_extents cell_extents(char const* function, grid_extents map, grid_ex
     auto const divides = [](std::size_t whole, std::size_t part) { return whole > 0 && part > 0 && whole % part == 0; };
     if (!divides(map.height, grid.height) || !divides(map.width, grid.width)) {
         throw value_error(std::string(function) + ": grid is " + extents_text({grid.height, grid.width}) +
-                          ", expected extents that divide the UV maps' " + extents_text({map.height, map.width}));
+                          ", expected extents that divide the maps' " + extents_text({map.height, map.width}));
     }
     return {map.height / grid.height, map.width / grid.width};
 }

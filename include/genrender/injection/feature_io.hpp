@@ -96,8 +96,8 @@ void record_features(injector<Features, Real> const&, attention_place, std::type
 ///
 /// These the compiler cannot check, and a model owes them: the inputs of all places can be asked for before the graph
 /// starts, in any order, for different frames on several threads; a graph that honours them puts out the F that the
-/// processor returns where it is called back, up to rounding. It does not require that one type serves both forms;
-/// those of the library do.
+/// processor returns where it is called back, up to rounding.
+/// It does not require that one type serves both forms; those of the library do.
 ///
 /// See also: attention_processor, the same contract for engines that call back; plain_attention, recorder and injector,
 /// which are models.

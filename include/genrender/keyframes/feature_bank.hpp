@@ -42,9 +42,11 @@ public:
 private:
     std::size_t position(attention_place place) const {
         auto const at = place.site.value * branches_ + place.branch;
-        require_value(place.branch < branches_ && at < places_.size(), "feature_bank", "place",
-                      "site " + std::to_string(place.site.value) + " branch " + std::to_string(place.branch),
-                      (std::to_string(sites_) + " sites with " + std::to_string(branches_) + " branches").c_str());
+        if (place.branch >= branches_ || at >= places_.size()) {
+            throw value_error("feature_bank: place is site " + std::to_string(place.site.value) + " branch " +
+                              std::to_string(place.branch) + ", expected " + std::to_string(sites_) + " sites with " +
+                              std::to_string(branches_) + " branches");
+        }
         return at;
     }
 

@@ -42,7 +42,7 @@ inline float seeded_gain(std::string_view name) {
         rule{"attn1.to_q", 2.0f},        rule{"attn1.to_k", 2.0f}, // attention that picks some tokens, not the mean of all
         rule{"attn2.to_out", 3.0f},      rule{"controlnet_cond_embedding", 1.5f},
         rule{"time_emb_proj", 0.3f},     rule{"conv_shortcut", 0.7f},
-        rule{"conv_out.weight", 0.95f},
+        rule{"conv_out.weight", 0.95f},  rule{"controlnet_down_blocks", 1.7f},
     };
     for (auto const& [part, gain] : rules) {
         if (name.find(part) != std::string_view::npos) {

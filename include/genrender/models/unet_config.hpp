@@ -18,10 +18,10 @@ namespace genrender {
 struct unet_config {
     std::size_t in_channels = 12;                              ///< of the latents
     std::size_t out_channels = 12;                             ///< of the prediction
-    std::vector<std::size_t> block_out_channels{32, 64, 96};   ///< one a level, from the finest; each next level halves the grid
+    std::vector<std::size_t> block_out_channels{32, 48, 64};   ///< one a level, from the finest; each next level halves the grid
     std::vector<bool> level_has_attention{false, true, false}; ///< down_block_types: CrossAttnDownBlock2D or DownBlock2D
     std::size_t layers_per_block = 1;                          ///< resnets a level on the way down; one more on the way up
-    std::vector<std::size_t> attention_head_dim{1, 2, 3};      ///< a level; it is the *number* of heads, as in SD 1.5
+    std::vector<std::size_t> attention_head_dim{1, 2, 2};      ///< a level; it is the *number* of heads, as in SD 1.5
     std::size_t cross_attention_dim = 48;                      ///< channels of a prompt token
     std::size_t norm_num_groups = 8;                           ///< of every GroupNorm
     std::size_t conditioning_channels = 3;                     ///< of the ControlNet's hint; depth is repeated over them

@@ -52,8 +52,9 @@ void initial_noise(strided_view<Real, 4> z, uv_maps_view const& maps, std::span<
     for (auto const frame : frames) {
         require_value(frame.value < maps.frame_count(), "initial_noise", "frames", frame.value, "frames of the UV maps");
     }
-    auto const resolution = settings.T > 0 ? texture_resolution::same(settings.T)
-                                           : texture_resolution::matched(maps, grid, 1);
+    auto const resolution = settings.kind != noise_kind::uv ? texture_resolution::same(1) // No texture is read.
+                            : settings.T > 0                ? texture_resolution::same(settings.T)
+                                                            : texture_resolution::matched(maps, grid, 1);
     noise_texture const z_UV{settings.seed};
 
     loop(frames.size(), [&](std::size_t i) {

@@ -67,7 +67,6 @@ std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view
     }
     // Frame 0 stays as it is, so its statistics can be taken before the others change.
     auto const first = statistics(0, background[0]);
-    auto const first_everywhere = statistics(0, all);
     for (std::size_t i = 0; i < z.extent(0); ++i) {
         auto const own = statistics(i, background[i]);
         if (own.pixels >= least && first.pixels >= least) {
@@ -76,7 +75,7 @@ std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view
             }
         } else if (settings.fallback == without_background::all_pixels) {
             if (i > 0) {
-                adain(z[i], statistics(i, all), first_everywhere);
+                adain(z[i], statistics(i, all), statistics(0, all));
             }
         } else {
             skipped.push_back(i);
