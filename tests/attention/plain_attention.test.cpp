@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 1, 2] Every frame attends to itself and to nothing else.
+// [GR eq. 2] Every frame attends to itself and to nothing else.
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 
@@ -39,7 +39,7 @@ TEST_SUITE("attention/plain_attention") {
         CHECK(own_attention_sources(K, V, 0).empty());
     }
 
-    TEST_CASE("[GR eq. 1] F of one frame by hand") {
+    TEST_CASE("[GR eq. 2] queries and keys and values come from the features of the frame itself by hand") {
         // W_Q = ln 3, W_K = 1, W_V = 4: token f = 1 weighs its keys 1 and 0 by 3 : 1, token f = 0 by 1 : 1.
         matrix_module<double> module(1);
         module.W_Q(0, 0) = std::log(3.0);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Animated WebP files, read back by the format's own decoder.
 #include <examples/support/animation_file.hpp>
 
 #include "scratch_folder.hpp"

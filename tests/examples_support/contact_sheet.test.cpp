@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sheets of frames and their labels, pixel by pixel.
 #include <examples/support/contact_sheet.hpp>
 
 #include <doctest/doctest.h>

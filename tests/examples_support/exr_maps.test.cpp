@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// EXR folders: what is read, and every sentence about what is not.
 #include <examples/support/exr_maps.hpp>
 
 #include "exr_worlds.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// EXR files written and read back in both layouts.
 #include <examples/support/exr_maps_writer.hpp>
 
 #include "exr_worlds.hpp"

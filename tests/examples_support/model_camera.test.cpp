@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Cameras that see the whole of a model.
 #include <examples/support/model_camera.hpp>
 
 #include <doctest/doctest.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Model files: those of the test package, and small ones with known vertices.
 #include <examples/support/model_file.hpp>
 
 #include "gltf_file.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Keys of a node's animation and what holds before and after them.
 #include <examples/support/model_nodes.hpp>
 
 #include <doctest/doctest.h>

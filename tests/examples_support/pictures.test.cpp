@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pictures and PNG files, read back.
 #include <examples/support/pictures.hpp>
 
 #include "scratch_folder.hpp"

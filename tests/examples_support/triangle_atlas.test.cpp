@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Parametrisations made for meshes without one: nothing overlaps.
 #include <examples/support/triangle_atlas.hpp>
 
 #include <genrender/scene/primitives.hpp>

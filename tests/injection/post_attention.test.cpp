@@ -63,6 +63,10 @@ TEST_SUITE("injection/post_attention") {
         auto const F = random_features<Real>({1, tokens, channels}, 3);
         post_attention(F.view()[0], F_KF, plan.rows(), Real(0));
         CHECK(equal_bits(F, F_hat));
+        // Not even a feature that overflowed shows.
+        F_KF.view()(plan.sources[0] / tokens, plan.sources[0] % tokens, 0) = std::numeric_limits<Real>::infinity();
+        post_attention(F.view()[0], F_KF, plan.rows(), Real(0));
+        CHECK(equal_bits(F, F_hat));
     }
 
     TEST_CASE_TEMPLATE("[GR eq. 6] alpha 1 gives F_bar and uncovered tokens still keep F_hat", Real, float, double) {
