@@ -49,11 +49,10 @@ double correlation_of(latents<float> const& z, texel_grid const& map, std::uint3
     auto const width = map.grid().width;
     for (std::uint32_t i = apart; i < z.shape()[0]; ++i) {
         for (std::uint32_t t = 0; t < map.grid().size(); ++t) {
-            auto const other = along_surfaces              ? corresponding_token(map, {i - apart}, {i}, {t})
-                               : map.point_at({i}, {t}) ? std::optional(token_index{t})
-                                                           : std::nullopt;
-            for (std::size_t c = 0; c < z.shape()[1] && other; ++c) {
-                pairs.add(z(i - apart, c, other->value / width, other->value % width), z(i, c, t / width, t % width));
+            auto const shown = corresponding_token(map, {along_surfaces ? i - apart : i}, {i}, {t});
+            auto const other = along_surfaces ? shown.value_or(token_index{}).value : t;
+            for (std::size_t c = 0; c < z.shape()[1] && shown; ++c) {
+                pairs.add(z(i - apart, c, other / width, other % width), z(i, c, t / width, t % width));
             }
         }
     }

@@ -171,6 +171,35 @@ struct self_attention {
     }
 };
 
+/// A self-attention module as it is built into a static graph, of the engine's operations alone. `in` are the graph's extra
+/// inputs at the module, named as genrender::feature_inputs names them.
+template <class Inputs>
+tensor self_attention_of_graph(self_attention const& module, tensor const& f, Inputs const& in) {
+    key_values const own{module.key(f), module.value(f)};
+    key_values joined;
+    if (in.f_KF != nullptr) {
+        joined = {module.key(*in.f_KF), module.value(*in.f_KF)};
+    }
+    attention_lists lists(f.sizes[0]);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        for (std::size_t j = 0; j < lists.size(); ++j) { // eq. 1, or eq. 3 over the whole stack
+            if (j == i || in.attends_to_stack) {
+                lists[i].push_back({own, j});
+            }
+        }
+        for (std::size_t k = 0; k < joined.K.sizes[0]; ++k) { // eq. 5
+            if (k != in.left_out[i]) {
+                lists[i].push_back({joined, k});
+            }
+        }
+    }
+    auto F = attend(module.query(f), lists);
+    for (std::size_t i = 0; i < in.rows.size(); ++i) { // eq. 6
+        mix_gathered(F, i, *in.F_KF, in.rows[i].offsets, in.rows[i].sources, in.rows[i].weights, in.alpha);
+    }
+    return F;
+}
+
 /// A network with two self-attention modules that predicts v, guided by two prompts: 0 the empty one, 1 the user's.
 struct network {
     static constexpr std::size_t latent_channels = 4;

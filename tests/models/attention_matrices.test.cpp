@@ -40,8 +40,8 @@ TEST_SUITE("models/attention_matrices") {
         auto h = random_stack<Real, 2>({5, 4}, 2);
         auto expected = h;
         module.add_output(h.view(), F);
-        auto const out =
-            plain_linear<Real>(F, source.take("attn1.to_out.0.weight", {4, 4}), source.take("attn1.to_out.0.bias", {4}), 4);
+        auto const out = plain_linear<Real>(F, source.take("attn1.to_out.0.weight", {4, 4}),
+                                            source.take("attn1.to_out.0.bias", {4}), 4);
         add_scaled(expected.view(), out);
         check_close<Real, 2>(h.view(), expected);
     }

@@ -38,7 +38,8 @@ TEST_SUITE("models/controlnet") {
         auto const name = std::string("controlnet_cond_embedding");
         stack<Real, 2> h({32, 3});
         copy(h.view(), hint[0]);
-        auto const step = [&](std::string const& conv, grid_extents grid, std::size_t in, std::size_t out, std::size_t stride, bool last) {
+        auto const step = [&](std::string const& conv, grid_extents grid, std::size_t in, std::size_t out,
+                              std::size_t stride, bool last) {
             h = plain_conv2d<Real>(h, grid, source.take(name + conv + ".weight", {out, in, 3, 3}),
                                    source.take(name + conv + ".bias", {out}), 3, stride);
             for (std::size_t e = 0; e < h.size() && !last; ++e) {

@@ -17,8 +17,9 @@ TEST_SUITE("models/conv2d") {
                     auto source = weights<Real>::seeded(kernel, "test");
                     conv2d<Real> const conv(source, "conv", 3, 4, kernel, stride);
                     auto const in = random_stack<Real, 2>({grid.size(), 3}, stride);
-                    auto const expected = plain_conv2d<Real>(in, grid, source.take("conv.weight", {4, 3, kernel, kernel}),
-                                                             source.take("conv.bias", {4}), kernel, stride);
+                    auto const expected =
+                        plain_conv2d<Real>(in, grid, source.take("conv.weight", {4, 3, kernel, kernel}),
+                                           source.take("conv.bias", {4}), kernel, stride);
                     stack<Real, 2> out({conv.out_grid(grid).size(), 4});
                     conv(out.view(), in, grid);
                     check_close<Real, 2>(out.view(), expected);

@@ -38,7 +38,8 @@ TEST_SUITE("models/feature_maps") {
             CHECK(out.data()[e] == std::array{1.0f, 3.0f, 4.0f, 2.0f, 5.0f, 6.0f}[e]);
         }
         stack<float, 2> narrow({2, 2});
-        CHECK_THROWS_WITH_AS(concatenate(narrow.view(), a, b), "concatenate: out is [2, 2], expected [2, 3]", shape_error);
+        CHECK_THROWS_WITH_AS(concatenate(narrow.view(), a, b), "concatenate: out is [2, 2], expected [2, 3]",
+                             shape_error);
     }
 
     TEST_CASE("a scaled map is added") {
@@ -50,6 +51,7 @@ TEST_SUITE("models/feature_maps") {
         add_scaled(a.view(), b, 0.5);
         CHECK(a(0, 0) == 2.5);
         CHECK(a(0, 1) == 2);
-        CHECK_THROWS_WITH_AS(add_scaled(a.view(), stack<double, 2>({2, 2})), "add_scaled: from is [2, 2], expected [1, 2]", shape_error);
+        CHECK_THROWS_WITH_AS(add_scaled(a.view(), stack<double, 2>({2, 2})),
+                             "add_scaled: from is [2, 2], expected [1, 2]", shape_error);
     }
 }

@@ -14,17 +14,18 @@ TEST_SUITE("models/feed_forward") {
         auto source = weights<Real>::seeded(1, "test");
         feed_forward<Real> const layer(source, "ff", 3);
         auto const x = random_stack<Real, 2>({4, 3}, 1);
-        auto const hidden =
-            plain_linear<Real>(x, source.take("ff.net.0.proj.weight", {24, 3}), source.take("ff.net.0.proj.bias", {24}), 24);
+        auto const hidden = plain_linear<Real>(x, source.take("ff.net.0.proj.weight", {24, 3}),
+                                               source.take("ff.net.0.proj.bias", {24}), 24);
         stack<Real, 2> gated({4, 12});
         for (std::size_t token = 0; token < 4; ++token) {
             for (std::size_t c = 0; c < 12; ++c) {
                 auto const gate = static_cast<double>(hidden(token, 12 + c));
-                gated(token, c) =
-                    static_cast<Real>(static_cast<double>(hidden(token, c)) * gate * 0.5 * std::erfc(-gate / std::sqrt(2.0)));
+                gated(token, c) = static_cast<Real>(static_cast<double>(hidden(token, c)) * gate * 0.5 *
+                                                    std::erfc(-gate / std::sqrt(2.0)));
             }
         }
-        auto expected = plain_linear<Real>(gated, source.take("ff.net.2.weight", {3, 12}), source.take("ff.net.2.bias", {3}), 3);
+        auto expected =
+            plain_linear<Real>(gated, source.take("ff.net.2.weight", {3, 12}), source.take("ff.net.2.bias", {3}), 3);
         add_scaled(expected.view(), x);
         auto h = x;
         layer.add_to(h.view(), x);

@@ -16,7 +16,8 @@ TEST_SUITE("models/group_norm") {
         auto const bias = source.take("norm.bias", {6});
         auto in = random_stack<Real, 2>({50, 6}, 3);
         for (std::size_t e = 0; e < in.size(); ++e) {
-            in.data()[e] = in.data()[e] * (e % 6 < 3 ? Real(4) : Real(0.5)) + 10; // far from 0, groups of different spread
+            in.data()[e] =
+                in.data()[e] * (e % 6 < 3 ? Real(4) : Real(0.5)) + 10; // far from 0, groups of different spread
         }
         stack<Real, 2> out({50, 6});
         norm(out.view(), in);

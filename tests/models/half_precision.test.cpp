@@ -37,7 +37,8 @@ TEST_SUITE("models/half_precision") {
     }
 
     TEST_CASE("floats go to the nearest half and ties to even") {
-        for (auto const half : std::array<std::uint16_t, 8>{0x0000, 0x0001, 0x0002, 0x03FF, 0x0400, 0x3C00, 0x3C01, 0x7BFE}) {
+        for (auto const half :
+             std::array<std::uint16_t, 8>{0x0000, 0x0001, 0x0002, 0x03FF, 0x0400, 0x3C00, 0x3C01, 0x7BFE}) {
             auto const low = float_of_half(half);
             auto const high = float_of_half(static_cast<std::uint16_t>(half + 1));
             auto const middle = (low + high) / 2;

@@ -34,6 +34,7 @@ TEST_SUITE("models/linear") {
         stack<float, 2> in({4, 3});
         stack<float, 2> out({4, 3});
         CHECK_THROWS_WITH_AS(layer(out.view(), in), "linear: out is [4, 3], expected [4, 2]", shape_error);
-        CHECK_THROWS_WITH_AS(layer(out.view(), stack<float, 2>({4, 2})), "linear: in is [4, 2], expected [4, 3]", shape_error);
+        CHECK_THROWS_WITH_AS(layer(out.view(), stack<float, 2>({4, 2})), "linear: in is [4, 2], expected [4, 3]",
+                             shape_error);
     }
 }

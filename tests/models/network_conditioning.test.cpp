@@ -19,6 +19,7 @@ TEST_SUITE("models/network_conditioning") {
             CHECK(hint(0, channel, 0, 2) == 0);
         }
         depth(0, 0, 1) = std::numeric_limits<float>::infinity();
-        CHECK_THROWS_WITH_AS(depth_hint<Real>(depth), "depth_hint: inverse_depth is inf, expected finite numbers", value_error);
+        CHECK_THROWS_WITH_AS(depth_hint<Real>(depth), "depth_hint: inverse_depth is inf, expected finite numbers",
+                             value_error);
     }
 }

@@ -19,8 +19,8 @@ TEST_SUITE("models/prompt_vocabulary") {
 
     TEST_CASE("an unknown word is named with those that are known") {
         auto const known = std::string("checker stripes dots bricks marble rings plain camo");
-        CHECK_THROWS_WITH_AS(prompt_rows("marble Statue"), ("prompt_vocabulary: word is statue, expected one of " + known).c_str(),
-                             value_error);
+        CHECK_THROWS_WITH_AS(prompt_rows("marble Statue"),
+                             ("prompt_vocabulary: word is statue, expected one of " + known).c_str(), value_error);
         CHECK_THROWS_WITH_AS(prompt_rows("n\xC3\xA9on,"),
                              ("prompt_vocabulary: word is n\xC3\xA9on, expected one of " + known).c_str(), value_error);
     }

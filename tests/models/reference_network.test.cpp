@@ -74,7 +74,8 @@ TEST_SUITE("models/reference_network") {
         check_denoiser_laws(small_network<Real>(), Real(1.5));
     }
 
-    TEST_CASE_TEMPLATE("a frame is the same to the bit alone and in company and on any number of threads", Real, float, double) {
+    TEST_CASE_TEMPLATE("a frame is the same to the bit alone and in company and on any number of threads", Real, float,
+                       double) {
         auto const network = small_network<Real>();
         auto const z = random_stack<Real, 4>({3, 4, 4, 6}, 2);
         auto const together = estimate_of(network, z, Real(3));
@@ -101,10 +102,12 @@ TEST_SUITE("models/reference_network") {
         stack<float, 4> x0(z.extents());
         network(x0.view(), z.view(), 1.0f, std::array{frame_index{2}, frame_index{0}}, noting);
 
-        std::vector<std::string> const names{
-            "down_blocks.0.attentions.0.transformer_blocks.0.attn1", "mid_block.attentions.0.transformer_blocks.0.attn1",
-            "down_blocks.0.attentions.0.transformer_blocks.0.attn1", "mid_block.attentions.0.transformer_blocks.0.attn1",
-            "up_blocks.1.attentions.0.transformer_blocks.0.attn1",   "up_blocks.1.attentions.1.transformer_blocks.0.attn1"};
+        std::vector<std::string> const names{"down_blocks.0.attentions.0.transformer_blocks.0.attn1",
+                                             "mid_block.attentions.0.transformer_blocks.0.attn1",
+                                             "down_blocks.0.attentions.0.transformer_blocks.0.attn1",
+                                             "mid_block.attentions.0.transformer_blocks.0.attn1",
+                                             "up_blocks.1.attentions.0.transformer_blocks.0.attn1",
+                                             "up_blocks.1.attentions.1.transformer_blocks.0.attn1"};
         auto const sites = network.sites();
         REQUIRE(sites.size() == names.size());
         for (std::size_t s = 0; s < names.size(); ++s) {
@@ -145,9 +148,11 @@ TEST_SUITE("models/reference_network") {
     TEST_CASE("the estimate answers to noise and depth and prompt and seed") {
         auto const z = random_stack<float, 4>({3, 4, 4, 6}, 2);
         auto const base = estimate_of(small_network<float>(), z, 1.0f);
-        CHECK(largest_difference(base, estimate_of(small_network<float>(), random_stack<float, 4>({3, 4, 4, 6}, 3), 1.0f)) > 0.05);
+        CHECK(largest_difference(
+                  base, estimate_of(small_network<float>(), random_stack<float, 4>({3, 4, 4, 6}, 3), 1.0f)) > 0.05);
         CHECK(largest_difference(base, estimate_of(small_network<float>("camo"), z, 1.0f)) > 0.05);
-        auto const flat = reference_network<float>::seeded(stack<float, 3>({3, 8, 12}), "marble", 1, 2, {}, small_config());
+        auto const flat =
+            reference_network<float>::seeded(stack<float, 3>({3, 8, 12}), "marble", 1, 2, {}, small_config());
         CHECK(largest_difference(base, estimate_of(flat, z, 1.0f)) > 0.05);
         auto const other = reference_network<float>::seeded(moving_box(), "marble", 2, 2, {}, small_config());
         CHECK(largest_difference(base, estimate_of(other, z, 1.0f)) > 0.05);
@@ -189,18 +194,22 @@ TEST_SUITE("models/reference_network") {
             network(x0.view(), in.view(), sigma, std::array{frame_index{frame}}, plain);
         };
         CHECK_THROWS_WITH_AS(run(z, 1, 3), "reference_network: frames is 3, expected below 3", value_error);
-        CHECK_THROWS_WITH_AS(run(stack<float, 4>({1, 4, 4, 4}), 1, 0), "reference_network: z is [1, 4, 4, 4], expected [1, 4, 4, 6]",
-                             shape_error);
+        CHECK_THROWS_WITH_AS(run(stack<float, 4>({1, 4, 4, 4}), 1, 0),
+                             "reference_network: z is [1, 4, 4, 4], expected [1, 4, 4, 6]", shape_error);
         CHECK_THROWS_AS(run(z, -1, 0), value_error);
 
         auto const build = [](std::size_t height, std::size_t width, char const* prompt) {
-            return reference_network<float>::seeded(stack<float, 3>({1, height, width}), prompt, 1, 2, {}, small_config());
+            return reference_network<float>::seeded(stack<float, 3>({1, height, width}), prompt, 1, 2, {},
+                                                    small_config());
         };
-        CHECK_THROWS_WITH_AS(build(8, 9, ""), "reference_network: width of hint is 9, expected a multiple of 2", value_error);
-        CHECK_THROWS_WITH_AS(build(6, 8, ""), "unet_config: height of the latents is 3, expected a multiple of 2 above 0", value_error);
+        CHECK_THROWS_WITH_AS(build(8, 9, ""), "reference_network: width of hint is 9, expected a multiple of 2",
+                             value_error);
+        CHECK_THROWS_WITH_AS(build(6, 8, ""),
+                             "unet_config: height of the latents is 3, expected a multiple of 2 above 0", value_error);
         CHECK_THROWS_AS(build(8, 8, "a castle"), value_error);
-        CHECK_THROWS_WITH_AS((reference_network<float>::seeded(stack<float, 3>({0, 8, 8}), "", 1, 2, {}, small_config())),
-                             "reference_network: frames of hint is 0, expected at least 1", value_error);
+        CHECK_THROWS_WITH_AS(
+            (reference_network<float>::seeded(stack<float, 3>({0, 8, 8}), "", 1, 2, {}, small_config())),
+            "reference_network: frames of hint is 0, expected at least 1", value_error);
 
         auto all = reference_weights<float>::seeded(1);
         auto conditioning = all.conditioning(small_config(), moving_box(), "");

@@ -65,16 +65,17 @@ TEST_SUITE("models/reference_weights") {
         std::array const one{1.0f};
         write_safetensors(file.path, {{"vae.scale", {{1}, one}}}, safetensors_storage::f32);
         CHECK_THROWS_WITH_AS(reference_weights<float>::from_file(file.path),
-                             (file.path + ": tensor vae.scale belongs to no network, expected names that begin with unet., "
-                                          "controlnet. or prompt.")
+                             (file.path +
+                              ": tensor vae.scale belongs to no network, expected names that begin with unet., "
+                              "controlnet. or prompt.")
                                  .c_str(),
                              file_error);
         write_safetensors(file.path, {{"unet.odd", {{1}, one}}}, safetensors_storage::f32);
         auto loaded = reference_weights<float>::from_file(file.path);
         stack<float, 3> const hint({1, 16, 16});
-        CHECK_THROWS_WITH_AS(network_of(loaded, hint),
-                             (file.path + ": there is no tensor prompt.token_embedding.weight, expected one of shape [9, 48]")
-                                 .c_str(),
-                             file_error);
+        CHECK_THROWS_WITH_AS(
+            network_of(loaded, hint),
+            (file.path + ": there is no tensor prompt.token_embedding.weight, expected one of shape [9, 48]").c_str(),
+            file_error);
     }
 }

@@ -19,7 +19,8 @@ TEST_SUITE("models/resampler") {
         for (std::size_t e = 0; e < 8; ++e) {
             CHECK(out.data()[e] == (e % 4 < 2 ? 1 : 2));
         }
-        CHECK_THROWS_WITH_AS(repeat_twice(out.view(), in, {2, 2}), "repeat_twice: in is [2, 1], expected [4, 1]", shape_error);
+        CHECK_THROWS_WITH_AS(repeat_twice(out.view(), in, {2, 2}), "repeat_twice: in is [2, 1], expected [4, 1]",
+                             shape_error);
     }
 
     TEST_CASE_TEMPLATE("down is a convolution of stride 2 and up one of the repeated map", Real, float, double) {
@@ -34,9 +35,11 @@ TEST_SUITE("models/resampler") {
         CHECK(doubled.grid() == grid_extents{8, 12});
         stack<Real, 2> repeated({96, 3});
         repeat_twice(repeated.view(), x[1], {4, 6});
-        check_close<Real const, 2>(halved[1], plain_conv2d<Real>(x[1], {4, 6}, source.take("down.conv.weight", {3, 3, 3, 3}),
-                                                                 source.take("down.conv.bias", {3}), 3, 2));
-        check_close<Real const, 2>(doubled[1], plain_conv2d<Real>(repeated, {8, 12}, source.take("up.conv.weight", {3, 3, 3, 3}),
-                                                                  source.take("up.conv.bias", {3}), 3, 1));
+        check_close<Real const, 2>(halved[1],
+                                   plain_conv2d<Real>(x[1], {4, 6}, source.take("down.conv.weight", {3, 3, 3, 3}),
+                                                      source.take("down.conv.bias", {3}), 3, 2));
+        check_close<Real const, 2>(doubled[1],
+                                   plain_conv2d<Real>(repeated, {8, 12}, source.take("up.conv.weight", {3, 3, 3, 3}),
+                                                      source.take("up.conv.bias", {3}), 3, 1));
     }
 }

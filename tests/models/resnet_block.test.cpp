@@ -51,14 +51,16 @@ void check_resnet(std::size_t in, std::size_t out) {
                                          source.take("r.time_emb_proj.bias", {out}), out);
     for (std::size_t i = 0; i < 2; ++i) {
         auto h = plain_conv2d<Real>(plain_norm_silu<Real>(x[i], source.take("r.norm1.bias", {in})), grid,
-                                    source.take("r.conv1.weight", {out, in, 3, 3}), source.take("r.conv1.bias", {out}), 3, 1);
+                                    source.take("r.conv1.weight", {out, in, 3, 3}), source.take("r.conv1.bias", {out}),
+                                    3, 1);
         for (std::size_t t = 0; t < grid.size(); ++t) {
             for (std::size_t c = 0; c < out; ++c) {
                 h(t, c) += time(0, c);
             }
         }
         auto expected = plain_conv2d<Real>(plain_norm_silu<Real>(h, source.take("r.norm2.bias", {out})), grid,
-                                           source.take("r.conv2.weight", {out, out, 3, 3}), source.take("r.conv2.bias", {out}), 3, 1);
+                                           source.take("r.conv2.weight", {out, out, 3, 3}),
+                                           source.take("r.conv2.bias", {out}), 3, 1);
         if (in == out) {
             add_scaled(expected.view(), x[i]);
         } else {
@@ -73,7 +75,9 @@ void check_resnet(std::size_t in, std::size_t out) {
 } // namespace
 
 TEST_SUITE("models/resnet_block") {
-    TEST_CASE_TEMPLATE("a block is the sum of its branch and its input", Real, float, double) { check_resnet<Real>(8, 8); }
+    TEST_CASE_TEMPLATE("a block is the sum of its branch and its input", Real, float, double) {
+        check_resnet<Real>(8, 8);
+    }
 
     TEST_CASE_TEMPLATE("a block that changes the channels projects its input", Real, float, double) {
         check_resnet<Real>(8, 12);

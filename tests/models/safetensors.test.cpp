@@ -24,9 +24,7 @@ std::string safetensors_bytes(std::string const& header, std::string const& data
     return std::string(reinterpret_cast<char const*>(&length), 8) + header + data;
 }
 
-void write_bytes(std::string const& path, std::string const& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-}
+void write_bytes(std::string const& path, std::string const& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
 std::string bytes_of(std::vector<float> const& values) {
     return {reinterpret_cast<char const*>(values.data()), values.size() * sizeof(float)};
@@ -70,9 +68,11 @@ TEST_SUITE("models/safetensors") {
 
     TEST_CASE("single values and empty tensors are legal and so is an empty file") {
         temporary_file const file("odd.safetensors");
-        write_bytes(file.path(), safetensors_bytes(R"({"one":{"dtype":"F32","shape":[],"data_offsets":[0,4]},)"
-                                                   R"("none":{"dtype":"F32","shape":[3,0,4611686018427387904],"data_offsets":[4,4]}})",
-                                                   bytes_of({7.0f})));
+        write_bytes(
+            file.path(),
+            safetensors_bytes(R"({"one":{"dtype":"F32","shape":[],"data_offsets":[0,4]},)"
+                              R"("none":{"dtype":"F32","shape":[3,0,4611686018427387904],"data_offsets":[4,4]}})",
+                              bytes_of({7.0f})));
         safetensors_file const tensors(file.path());
         CHECK(tensors.read<float>("one") == std::vector<float>{7.0f});
         CHECK(tensors.read<float>("none").empty());
@@ -88,19 +88,24 @@ TEST_SUITE("models/safetensors") {
         safetensors_file const tensors(file.path());
         CHECK(tensors.entries().at("new").dtype == "F4");
         CHECK_THROWS_WITH_AS(tensors.read<float>("ids"),
-                             (file.path() + ": tensor ids has dtype I64, expected F64, F32, F16 or BF16").c_str(), file_error);
+                             (file.path() + ": tensor ids has dtype I64, expected F64, F32, F16 or BF16").c_str(),
+                             file_error);
         CHECK_THROWS_WITH_AS(tensors.read<float>("new"),
-                             (file.path() + ": tensor new has dtype F4, expected F64, F32, F16 or BF16").c_str(), file_error);
+                             (file.path() + ": tensor new has dtype F4, expected F64, F32, F16 or BF16").c_str(),
+                             file_error);
         CHECK_THROWS_WITH_AS(tensors.read<float>("old"),
-                             (file.path() + ": there is no tensor old, expected one among the 2 of the file").c_str(), file_error);
+                             (file.path() + ": there is no tensor old, expected one among the 2 of the file").c_str(),
+                             file_error);
     }
 
     TEST_CASE("a file that ends too early is refused") {
         CHECK_THROWS_WITH_AS(safetensors_file("/nowhere/w.safetensors"),
-                             "/nowhere/w.safetensors: file cannot be opened, expected a readable safetensors file", file_error);
+                             "/nowhere/w.safetensors: file cannot be opened, expected a readable safetensors file",
+                             file_error);
         check_refused("", "file has 0 bytes, expected at least the 8 of the header's length");
         check_refused("1234567", "file has 7 bytes, expected at least the 8 of the header's length");
-        check_refused(safetensors_bytes("{}").substr(0, 9), "header has 2 bytes, expected at most the 1 that follow its length");
+        check_refused(safetensors_bytes("{}").substr(0, 9),
+                      "header has 2 bytes, expected at most the 1 that follow its length");
         check_refused(std::string(8, '\xFF'), "header has 18446744073709551615 bytes, expected at most 100000000");
         check_refused(safetensors_bytes(R"({"x":{"dtype":"F32","shape":[2],"data_offsets":[0,8]}})", "1234567"),
                       "tensor x has data_offsets [0, 8], expected an end within the 7 bytes of data");
@@ -112,7 +117,8 @@ TEST_SUITE("models/safetensors") {
         CHECK_THROWS_AS(safetensors_file{file.path()}, file_error);
         check_refused(safetensors_bytes("[1]"), "header is a JSON array, expected an object of tensors");
         check_refused(safetensors_bytes(R"({"x":{},"x":{}})"), "header has the key x twice, expected each key once");
-        check_refused(safetensors_bytes(R"({"x":{"shape":[],"shape":[]}})"), "header has the key shape twice, expected each key once");
+        check_refused(safetensors_bytes(R"({"x":{"shape":[],"shape":[]}})"),
+                      "header has the key shape twice, expected each key once");
         check_refused(safetensors_bytes(R"({"x":3})"), "tensor x has no dtype, expected the name of a type");
         check_refused(safetensors_bytes(R"({"x":{"dtype":"F32","data_offsets":[0,4]}})", "1234"),
                       "tensor x has no shape, expected whole numbers of at least 0");
@@ -120,7 +126,8 @@ TEST_SUITE("models/safetensors") {
                       "tensor x has shape [-1], expected whole numbers of at least 0");
         check_refused(safetensors_bytes(R"({"x":{"dtype":"F32","shape":[1],"data_offsets":[0,4,8]}})", "1234"),
                       "tensor x has 3 data_offsets, expected two");
-        check_refused(safetensors_bytes(R"({"__metadata__":{"format":1}})"), "__metadata__ has a number for format, expected a string");
+        check_refused(safetensors_bytes(R"({"__metadata__":{"format":1}})"),
+                      "__metadata__ has a number for format, expected a string");
     }
 
     TEST_CASE("tensors whose bytes do not add up are refused") {
@@ -128,13 +135,16 @@ TEST_SUITE("models/safetensors") {
                       "tensor x has data_offsets [4, 0], expected begin <= end");
         check_refused(safetensors_bytes(R"({"x":{"dtype":"F32","shape":[3],"data_offsets":[0,8]}})", "12345678"),
                       "tensor x has data_offsets [0, 8], expected 12 bytes for F32 [3]");
-        check_refused(safetensors_bytes(R"({"x":{"dtype":"F32","shape":[1099511627776,1099511627776],"data_offsets":[0,0]}})"),
-                      "tensor x is F32 [1099511627776, 1099511627776], expected a size that fits 64 bits");
+        check_refused(
+            safetensors_bytes(R"({"x":{"dtype":"F32","shape":[1099511627776,1099511627776],"data_offsets":[0,0]}})"),
+            "tensor x is F32 [1099511627776, 1099511627776], expected a size that fits 64 bits");
         check_refused(safetensors_bytes(R"({"x":{"dtype":"U8","shape":[4],"data_offsets":[0,4]},)"
-                                        R"("y":{"dtype":"U8","shape":[4],"data_offsets":[2,6]}})", "123456"),
+                                        R"("y":{"dtype":"U8","shape":[4],"data_offsets":[2,6]}})",
+                                        "123456"),
                       "tensor y begins at byte 2, expected 4 where tensor x ends (they overlap)");
         check_refused(safetensors_bytes(R"({"x":{"dtype":"U8","shape":[2],"data_offsets":[0,2]},)"
-                                        R"("y":{"dtype":"U8","shape":[2],"data_offsets":[3,5]}})", "12345"),
+                                        R"("y":{"dtype":"U8","shape":[2],"data_offsets":[3,5]}})",
+                                        "12345"),
                       "tensor y begins at byte 3, expected 2 where tensor x ends (there is a hole)");
         check_refused(safetensors_bytes(R"({"x":{"dtype":"U8","shape":[1],"data_offsets":[1,2]}})", "12"),
                       "tensor x begins at byte 1, expected 0 where the header ends (there is a hole)");
@@ -156,8 +166,8 @@ TEST_SUITE("models/safetensors") {
         for (std::size_t i = 0; i < values.size(); ++i) {
             CHECK(half.read<float>("b.weight")[i] == float_of_half(half_of_float(values[i])));
         }
-        CHECK_THROWS_WITH_AS(write_safetensors(file.path(), {{"x", {{4}, values}}}), "write_safetensors: x is [6], expected [4]",
-                             shape_error);
+        CHECK_THROWS_WITH_AS(write_safetensors(file.path(), {{"x", {{4}, values}}}),
+                             "write_safetensors: x is [6], expected [4]", shape_error);
         CHECK_THROWS_WITH_AS(write_safetensors("/nowhere/w.safetensors", {}),
                              "/nowhere/w.safetensors: file cannot be written, expected a writable place", file_error);
     }

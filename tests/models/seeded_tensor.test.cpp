@@ -27,7 +27,7 @@ TEST_SUITE("models/seeded_tensor") {
             sum += static_cast<double>(value);
             squares += static_cast<double>(value) * static_cast<double>(value);
         }
-        CHECK(std::abs(sum / 10000) < 0.006);                         // 4 standard errors
+        CHECK(std::abs(sum / 10000) < 0.006);                            // 4 standard errors
         CHECK(squares / 10000 * 50 == doctest::Approx(1).epsilon(0.06)); // 4 standard errors
     }
 

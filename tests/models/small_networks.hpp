@@ -119,7 +119,8 @@ stack<Real, 2> plain_conv2d(in_view<Real, 2> in, grid_extents grid, std::vector<
                         auto const column = static_cast<int>(x * stride + tap % kernel) - radius;
                         if (row >= 0 && column >= 0 && row < static_cast<int>(grid.height) &&
                             column < static_cast<int>(grid.width)) {
-                            auto const token = static_cast<std::size_t>(row) * grid.width + static_cast<std::size_t>(column);
+                            auto const token =
+                                static_cast<std::size_t>(row) * grid.width + static_cast<std::size_t>(column);
                             sum += static_cast<double>(weight[(o * ins + i) * kernel * kernel + tap]) *
                                    static_cast<double>(in(token, i));
                         }
@@ -136,7 +137,9 @@ stack<Real, 2> plain_conv2d(in_view<Real, 2> in, grid_extents grid, std::vector<
 class temporary_file {
 public:
     explicit temporary_file(std::string const& name)
-        : path_((std::filesystem::temp_directory_path() / (std::to_string(::getpid()) + "-genrender-" + name)).string()) {}
+        : path_(
+              (std::filesystem::temp_directory_path() / (std::to_string(::getpid()) + "-genrender-" + name)).string()) {
+    }
     temporary_file(temporary_file const&) = delete;
     temporary_file& operator=(temporary_file const&) = delete;
     ~temporary_file() {

@@ -21,7 +21,8 @@ TEST_SUITE("models/spatial_transformer") {
         small_pass<Real> const small;
         auto const x = random_maps<Real>(2, {4, 6}, 8, 2);
         auto const conv = [&](in_view<Real, 2> in, std::string const& name) {
-            return plain_conv2d<Real>(in, {4, 6}, source.take(name + ".weight", {8, 8, 1, 1}), source.take(name + ".bias", {8}), 1, 1);
+            return plain_conv2d<Real>(in, {4, 6}, source.take(name + ".weight", {8, 8, 1, 1}),
+                                      source.take(name + ".bias", {8}), 1, 1);
         };
         feature_maps<Real> h(2, {4, 6}, 8);
         for (std::size_t i = 0; i < 2; ++i) {

@@ -25,7 +25,8 @@ TEST_SUITE("models/time_embedding") {
         time_embedding<Real> const embedding(config, source);
         auto const apply = [&](std::vector<Real> in, std::string const& name) {
             auto const out = plain_linear<Real>(strided_view<Real const, 2>(in.data(), {1, in.size()}),
-                                                source.take(name + ".weight", {32, in.size()}), source.take(name + ".bias", {32}), 32);
+                                                source.take(name + ".weight", {32, in.size()}),
+                                                source.take(name + ".bias", {32}), 32);
             std::vector<Real> result(out.data(), out.data() + 32);
             for (auto& x : result) {
                 x = x / (1 + std::exp(-x));

@@ -61,8 +61,9 @@ stack<Real, 2> plain_attend(in_view<Real, 2> Q, in_view<Real, 2> K, in_view<Real
 } // namespace
 
 TEST_SUITE("models/transformer_block") {
-    TEST_CASE_TEMPLATE("[GR eq. 1] a block adds self-attention then attention to the prompt then its feed-forward layer", Real,
-                       float, double) {
+    TEST_CASE_TEMPLATE(
+        "[GR eq. 1] a block adds self-attention then attention to the prompt then its feed-forward layer", Real, float,
+        double) {
         auto const config = small_config();
         auto source = weights<Real>::seeded(1, "test");
         site_list sites({4, 4});
@@ -82,7 +83,8 @@ TEST_SUITE("models/transformer_block") {
                 auto const of = [&](char const* matrix, in_view<Real, 2> in) {
                     return plain_linear<Real>(in, source.take(name + matrix, {8, in.extent(1)}), {}, 8);
                 };
-                auto const F = plain_attend<Real>(of(".to_q.weight", f), of(".to_k.weight", from), of(".to_v.weight", from), 2);
+                auto const F =
+                    plain_attend<Real>(of(".to_q.weight", f), of(".to_k.weight", from), of(".to_v.weight", from), 2);
                 auto const out = plain_linear<Real>(F, source.take(name + ".to_out.0.weight", {8, 8}),
                                                     source.take(name + ".to_out.0.bias", {8}), 8);
                 add_scaled(expected.view(), out);
@@ -110,7 +112,8 @@ TEST_SUITE("models/transformer_block") {
         attention_place place;
         ones_attention ones{&f, &place};
         small_pass<double> small;
-        forward_pass<double, ones_attention, sequential_loop> const pass{small.frames, 1, small.prompt.view(), &ones, &small.loop};
+        forward_pass<double, ones_attention, sequential_loop> const pass{small.frames, 1, small.prompt.view(), &ones,
+                                                                         &small.loop};
         auto const x = random_maps<double>(2, {4, 4}, 8, 2);
         auto with_ones = x;
         block(pass, with_ones);

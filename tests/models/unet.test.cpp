@@ -139,10 +139,15 @@ TEST_SUITE("models/unet") {
         CHECK_NOTHROW(build([](auto&) {}));
         CHECK_THROWS_WITH_AS(build([&](auto& tensors) { tensors.erase(to_q); }),
                              text("there is no tensor " + to_q + ", expected one of shape [8, 8]").c_str(), file_error);
-        CHECK_THROWS_WITH_AS(build([&](auto& tensors) { tensors[to_q].shape = {4, 16}; }),
+        CHECK_THROWS_WITH_AS(build([&](auto& tensors) {
+                                 tensors[to_q].shape = {4, 16};
+                             }),
                              text("tensor " + to_q + " is [4, 16], expected [8, 8]").c_str(), file_error);
         std::vector<float> const one{1.0f};
-        CHECK_THROWS_WITH_AS(build([&](auto& tensors) { tensors["add_embedding.bias"] = {{1}, one}; }),
-                             text("1 tensors have no place in the network: add_embedding.bias, expected none").c_str(), file_error);
+        CHECK_THROWS_WITH_AS(build([&](auto& tensors) {
+                                 tensors["add_embedding.bias"] = {{1}, one};
+                             }),
+                             text("1 tensors have no place in the network: add_embedding.bias, expected none").c_str(),
+                             file_error);
     }
 }

@@ -22,13 +22,20 @@ TEST_SUITE("models/unet_config") {
             change(config);
             CHECK_THROWS_WITH_AS(require_config(config), text, value_error);
         };
-        check([](auto& c) { c.block_out_channels = {}; }, "unet_config: block_out_channels.size() is 0, expected at least 1");
+        check([](auto& c) { c.block_out_channels = {}; },
+              "unet_config: block_out_channels.size() is 0, expected at least 1");
         check([](auto& c) { c.level_has_attention = {true}; },
               "unet_config: level_has_attention.size() is 1, expected one entry for each of block_out_channels");
-        check([](auto& c) { c.attention_head_dim = {1, 2}; },
-              "unet_config: attention_head_dim.size() is 2, expected one entry for each of block_out_channels");
-        check([](auto& c) { c.attention_head_dim = {1, 5, 1}; },
-              "unet_config: attention_head_dim is 5, expected divisors of block_out_channels of their level");
+        check(
+            [](auto& c) {
+                c.attention_head_dim = {1, 2};
+            },
+            "unet_config: attention_head_dim.size() is 2, expected one entry for each of block_out_channels");
+        check(
+            [](auto& c) {
+                c.attention_head_dim = {1, 5, 1};
+            },
+            "unet_config: attention_head_dim is 5, expected divisors of block_out_channels of their level");
         check([](auto& c) { c.norm_num_groups = 7; },
               "unet_config: block_out_channels is 32, expected multiples of norm_num_groups");
         check([](auto& c) { c.norm_num_groups = 0; }, "unet_config: a count is 0, expected above 0");

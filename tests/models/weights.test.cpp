@@ -43,10 +43,12 @@ TEST_SUITE("models/weights") {
         write_safetensors(file.path(), {{"x.a", {{1}, one}}, {"x.b", {{1, 1}, one}}, {"y.c", {{1}, one}}});
         auto const text = [&](std::string const& sentence) { return file.path() + ": " + sentence; };
         auto store = weights<float>::from_file(file.path());
-        CHECK_THROWS_WITH_AS(store.take("x.c", {1, 2}), text("there is no tensor x.c, expected one of shape [1, 2]").c_str(), file_error);
+        CHECK_THROWS_WITH_AS(store.take("x.c", {1, 2}),
+                             text("there is no tensor x.c, expected one of shape [1, 2]").c_str(), file_error);
         CHECK_THROWS_WITH_AS(store.take("x.b", {1}), text("tensor x.b is [1, 1], expected [1]").c_str(), file_error);
         CHECK_THROWS_WITH_AS(store.require_all_taken(),
-                             text("2 tensors have no place in the network: x.a, y.c, expected none").c_str(), file_error);
+                             text("2 tensors have no place in the network: x.a, y.c, expected none").c_str(),
+                             file_error);
         auto part = weights<float>::from_file(file.path(), "x.");
         CHECK(part.take("a", {1}) == one);
         CHECK_THROWS_WITH_AS(part.require_all_taken(),

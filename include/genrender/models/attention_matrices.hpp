@@ -9,14 +9,14 @@
 
 namespace genrender {
 
-/// diffusers' Attention: W^Q, W^K and W^V without biases, W^O with one. A model of the concept attention_projections where
-/// features attend to features.
+/// diffusers' Attention: W^Q, W^K and W^V without biases, W^O with one. A model of the concept attention_projections
+/// where features attend to features.
 template <class Real>
 class attention_matrices {
 public:
     /// Takes `name.to_q`, `.to_k`, `.to_v` and `.to_out.0`. `source_channels` are those of what is attended to.
-    attention_matrices(weights<Real>& source, std::string const& name, std::size_t channels, std::size_t source_channels,
-                       std::size_t heads)
+    attention_matrices(weights<Real>& source, std::string const& name, std::size_t channels,
+                       std::size_t source_channels, std::size_t heads)
         : heads_(heads), to_q_(source, name + ".to_q", channels, channels, false),
           to_k_(source, name + ".to_k", source_channels, channels, false),
           to_v_(source, name + ".to_v", source_channels, channels, false),

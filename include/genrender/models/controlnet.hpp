@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The network beside the UNet that looks at the depth map (Zhang et al. 2023), layer for layer diffusers' ControlNetModel.
+// The network that looks at the depth map (Zhang et al. 2023), layer for layer diffusers' ControlNetModel.
 #pragma once
 
 #include <genrender/models/activation.hpp>
@@ -50,15 +50,18 @@ private:
     std::vector<conv2d<Real>> convolutions_;
 };
 
-/// A copy of the UNet's way down, whose outputs pass 1x1 convolutions (zero before training) and are added to the UNet's.
+/// A copy of the UNet's way down, whose outputs pass 1x1 convolutions (zero before training) and are added to the
+/// UNet's.
 template <class Real>
 class controlnet {
 public:
-    /// Takes every tensor of diffusers' ControlNetModel from `source` and enters its self-attention modules into `sites`.
-    /// Throws value_error if the config cannot be built, file_error if a tensor is missing, misshapen or left over.
+    /// Takes every tensor of diffusers' ControlNetModel from `source` and enters its self-attention modules into
+    /// `sites`. Throws value_error if the config cannot be built, file_error if a tensor is missing, misshapen or left
+    /// over.
     controlnet(unet_config const& config, weights<Real>& source, site_list& sites)
         : encoder_((require_config(config), config), source, sites), hint_(config, source),
-          mid_block_(source, "controlnet_mid_block", config.block_out_channels.back(), config.block_out_channels.back(), 1) {
+          mid_block_(source, "controlnet_mid_block", config.block_out_channels.back(), config.block_out_channels.back(),
+                     1) {
         for (auto const channels : skip_channels(config)) {
             auto const name = "controlnet_down_blocks." + std::to_string(down_blocks_.size());
             down_blocks_.emplace_back(source, name, channels, channels, 1);
@@ -69,8 +72,8 @@ public:
     /// The features of a frame's hint, which depend on nothing else.
     feature_maps<Real> embed(feature_maps<Real> const& hint) const { return hint_(hint); }
 
-    /// What to add to the UNet's skips and mid block, times `scale`, for z [frames, tokens, in_channels] at time t and one
-    /// embedded hint a frame.
+    /// What to add to the UNet's skips and mid block, times `scale`, for z [frames, tokens, in_channels] at time t and
+    /// one embedded hint a frame.
     template <class Pass>
     encoded_maps<Real> operator()(Pass& pass, feature_maps<Real> const& z, Real t,
                                   std::vector<feature_maps<Real> const*> const& hints, Real scale = 1) const {

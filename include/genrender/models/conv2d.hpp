@@ -13,8 +13,8 @@
 
 namespace genrender {
 
-/// A convolution, strictly a cross-correlation, of feature maps [tokens, channels] with zeros around them: kernel k (1 or 3), padding
-/// k / 2, stride 1 or more.
+/// A convolution, strictly a cross-correlation, of feature maps [tokens, channels] with zeros around them: kernel k (1
+/// or 3), padding k / 2, stride 1 or more.
 template <class Real>
 class conv2d {
 public:
@@ -46,8 +46,8 @@ public:
         return {steps(grid.height), steps(grid.width)};
     }
 
-    /// Writes the result [tokens of out_grid(grid), out] for `in` [tokens of grid, in]; rows of both contiguous, memory of its
-    /// own for each. Throws shape_error if they do not fit.
+    /// Writes the result [tokens of out_grid(grid), out] for `in` [tokens of grid, in]; rows of both contiguous, memory
+    /// of its own for each. Throws shape_error if they do not fit.
     void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, grid_extents grid) const {
         auto const to_grid = out_grid(grid);
         require_shape("conv2d", "in", in, {grid.size(), in_});
@@ -63,7 +63,8 @@ public:
                 for (std::size_t i = 0; i < count; ++i) {
                     auto const token = begin + i;
                     gather(neighbourhoods.row(static_cast<Eigen::Index>(i)).data(), in, grid,
-                           {static_cast<std::uint32_t>(token / to_grid.width), static_cast<std::uint32_t>(token % to_grid.width)});
+                           {static_cast<std::uint32_t>(token / to_grid.width),
+                            static_cast<std::uint32_t>(token % to_grid.width)});
                 }
                 to_matrix(out.slice(begin, count)).noalias() =
                     neighbourhoods.topRows(static_cast<Eigen::Index>(count)) * weight_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A stack of feature maps between two layers, channels of a token side by side, as attention and matrix products want them.
+// A stack of feature maps between two layers, channels of a token side by side, as attention wants them.
 #pragma once
 
 #include <genrender/core/index.hpp>
@@ -34,9 +34,10 @@ public:
     /// The same memory as the engine's outside writes it [frames, channels, height, width]; copies nothing.
     strided_view<Real, 4> channels_first() {
         auto const row = static_cast<std::ptrdiff_t>(grid_.width * channels());
-        return {values_.data(),
-                {frames(), channels(), grid_.height, grid_.width},
-                {static_cast<std::ptrdiff_t>(grid_.size() * channels()), 1, row, static_cast<std::ptrdiff_t>(channels())}};
+        return {
+            values_.data(),
+            {frames(), channels(), grid_.height, grid_.width},
+            {static_cast<std::ptrdiff_t>(grid_.size() * channels()), 1, row, static_cast<std::ptrdiff_t>(channels())}};
     }
 
 private:
@@ -57,8 +58,8 @@ void add_scaled(strided_view<Real, 2> to, in_view<Real, 2> from, std::type_ident
     }
 }
 
-/// Writes the channels of `first` and then those of `second` into `out`, a token at a time: skip connections. Throws shape_error
-/// unless tokens agree and channels add up.
+/// Writes the channels of `first` and then those of `second` into `out`, a token at a time: skip connections. Throws
+/// shape_error unless tokens agree and channels add up.
 template <class Real>
 void concatenate(strided_view<Real, 2> out, in_view<Real, 2> first, in_view<Real, 2> second) {
     require_shape("concatenate", "second", second, {first.extent(0), second.extent(1)});

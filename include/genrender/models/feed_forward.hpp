@@ -17,7 +17,8 @@ class feed_forward {
 public:
     /// Takes `name.net.0.proj` [8 channels, channels] and `name.net.2` [channels, 4 channels].
     feed_forward(weights<Real>& source, std::string const& name, std::size_t channels)
-        : proj_(source, name + ".net.0.proj", channels, 8 * channels), out_(source, name + ".net.2", 4 * channels, channels) {}
+        : proj_(source, name + ".net.0.proj", channels, 8 * channels),
+          out_(source, name + ".net.2", 4 * channels, channels) {}
 
     /// Adds the result for x [tokens, channels] to the residual `h` [tokens, channels].
     void add_to(strided_view<Real, 2> h, in_view<Real, 2> x) const {
@@ -31,7 +32,8 @@ public:
                 row[c] *= gelu(row[width + c]);
             }
         }
-        out_.add_to(h, strided_view<Real const, 2>(both.data(), {x.extent(0), width}, {static_cast<std::ptrdiff_t>(2 * width), 1}));
+        out_.add_to(h, strided_view<Real const, 2>(both.data(), {x.extent(0), width},
+                                                   {static_cast<std::ptrdiff_t>(2 * width), 1}));
     }
 
 private:

@@ -14,20 +14,20 @@
 
 namespace genrender {
 
-/// One run of one network for one guidance branch. All frames pass a layer before any enters the next, because a processor may
-/// let frames attend to each other [GR eq. 3].
+/// One run of one network for one guidance branch. All frames pass a layer before any enters the next, because a
+/// processor may let frames attend to each other [GR eq. 3].
 template <class Real, class Processor, parallel_loop Loop>
 struct forward_pass {
     using real_type = Real;
     using processor_type = Processor;
     using loop_type = Loop;
 
-    std::span<frame_index const> frames;  ///< which frame of the animation each entry of a stack is
-    std::uint32_t branch = 0;             ///< guidance branch
-    strided_view<Real const, 2> prompt;   ///< tokens of the prompt [tokens, cross_attention_dim]
-    Processor* processor = nullptr;       ///< runs at the self-attention sites
-    Loop const* loop = nullptr;           ///< over frames
-    std::vector<Real> time{};             ///< of the network's time_embedding, after SiLU [time_channels]
+    std::span<frame_index const> frames; ///< which frame of the animation each entry of a stack is
+    std::uint32_t branch = 0;            ///< guidance branch
+    strided_view<Real const, 2> prompt;  ///< tokens of the prompt [tokens, cross_attention_dim]
+    Processor* processor = nullptr;      ///< runs at the self-attention sites
+    Loop const* loop = nullptr;          ///< over frames
+    std::vector<Real> time{};            ///< of the network's time_embedding, after SiLU [time_channels]
 
     /// Calls `body(i)` for every entry of the stack.
     template <class Body>

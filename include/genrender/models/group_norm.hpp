@@ -12,7 +12,8 @@
 
 namespace genrender {
 
-/// Each group of neighbouring channels, over all tokens of a frame, to mean 0 and variance 1; then scale and shift a channel.
+/// Each group of neighbouring channels, over all tokens of a frame, to mean 0 and variance 1; then scale and shift a
+/// channel.
 template <class Real>
 class group_norm {
 public:
@@ -20,7 +21,8 @@ public:
     group_norm(weights<Real>& source, std::string const& name, std::size_t channels, std::size_t groups, Real epsilon)
         : groups_(groups), epsilon_(epsilon), weight_(source.take(name + ".weight", {channels})),
           bias_(source.take(name + ".bias", {channels})) {
-        require_value(groups > 0 && channels % groups == 0, "group_norm", "groups", groups, "a divisor of the channels");
+        require_value(groups > 0 && channels % groups == 0, "group_norm", "groups", groups,
+                      "a divisor of the channels");
     }
 
     /// Writes the result [tokens, channels]; `out` may be `in`. Throws shape_error if they do not fit.
@@ -53,7 +55,8 @@ public:
         std::vector<Real> scale(channels);
         std::vector<Real> shift(channels);
         for (std::size_t c = 0; c < channels; ++c) {
-            auto const factor = static_cast<double>(weight_[c]) / std::sqrt(variance[c] + static_cast<double>(epsilon_));
+            auto const factor =
+                static_cast<double>(weight_[c]) / std::sqrt(variance[c] + static_cast<double>(epsilon_));
             scale[c] = static_cast<Real>(factor);
             shift[c] = static_cast<Real>(static_cast<double>(bias_[c]) - mean[c] * factor);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The stand-in for an image autoencoder: one level of the orthonormal Haar transform (Haar 1910), each band at unit scale.
+// The stand-in for an image autoencoder: one level of the orthonormal Haar transform (Haar 1910).
 #pragma once
 
 #include <genrender/core/strided_view.hpp>
@@ -7,9 +7,9 @@
 #include <array>
 #include <cstddef>
 
-// A square of four pixels a b / c d has the mean band (a + b + c + d) / 2, and three details: left minus right, top minus bottom
-// and the diagonals' difference, each over 2. Images lie in [0, 1] and enter as 2 x - 1; bands leave scaled so that pictures of
-// lit scenes come near unit variance, as a denoiser expects of its latents.
+// A square of four pixels a b / c d has the mean band (a + b + c + d) / 2, and three details: left minus right, top
+// minus bottom and the diagonals' difference, each over 2. Images lie in [0, 1] and enter as 2 x - 1; bands leave
+// scaled so that pictures of lit scenes come near unit variance, as a denoiser expects of its latents.
 
 namespace genrender {
 
@@ -59,8 +59,9 @@ void haar_encode(strided_view<Real, 3> latent, in_view<Real, 3> image) {
     }
 }
 
-/// Writes the image [colours, height, width] of latents [4 colours, height / 2, width / 2]: the inverse of haar_encode. Values
-/// are not clamped to [0, 1]. Throws value_error if the channels are no multiple of 4, shape_error if the image does not fit.
+/// Writes the image [colours, height, width] of latents [4 colours, height / 2, width / 2]: the inverse of haar_encode.
+/// Values are not clamped to [0, 1]. Throws value_error if the channels are no multiple of 4, shape_error if the image
+/// does not fit.
 template <class Real>
 void haar_decode(strided_view<Real, 3> image, in_view<Real, 3> latent) {
     require_value(latent.extent(0) % 4 == 0, "haar_decode", "channels of latent", latent.extent(0), "a multiple of 4");

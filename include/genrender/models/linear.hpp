@@ -29,7 +29,8 @@ public:
     std::size_t in_channels() const { return static_cast<std::size_t>(weight_.cols()); }
     std::size_t out_channels() const { return static_cast<std::size_t>(weight_.rows()); }
 
-    /// Writes in W^T + b [tokens, out] for `in` [tokens, in]; rows of both contiguous. Throws shape_error if they do not fit.
+    /// Writes in W^T + b [tokens, out] for `in` [tokens, in]; rows of both contiguous. Throws shape_error if they do
+    /// not fit.
     void operator()(strided_view<Real, 2> out, in_view<Real, 2> in) const {
         require_fit(out, in);
         to_matrix(out).noalias() = to_matrix(in) * weight_.transpose();

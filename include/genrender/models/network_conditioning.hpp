@@ -13,15 +13,15 @@ namespace genrender {
 /// The conditioning of a run. Prompts are tokens, so that those of a real text encoder fit as well.
 template <class Real>
 struct network_conditioning {
-    stack<Real, 4> hint;          ///< of every frame of the animation [frames, conditioning_channels, height, width]
-    stack<Real, 2> prompt;        ///< [tokens, cross_attention_dim]
-    stack<Real, 2> empty_prompt;  ///< or the negative one [tokens, cross_attention_dim]; unused with guidance_scale 1
-    Real guidance_scale = 2;      ///< of classifier-free guidance; 1 runs the prompt alone
-    Real conditioning_scale = 1;  ///< factor of what the ControlNet adds; 0 is as if it were not there
+    stack<Real, 4> hint;         ///< of every frame of the animation [frames, conditioning_channels, height, width]
+    stack<Real, 2> prompt;       ///< [tokens, cross_attention_dim]
+    stack<Real, 2> empty_prompt; ///< or the negative one [tokens, cross_attention_dim]; unused with guidance_scale 1
+    Real guidance_scale = 2;     ///< of classifier-free guidance; 1 runs the prompt alone
+    Real conditioning_scale = 1; ///< factor of what the ControlNet adds; 0 is as if it were not there
 };
 
-/// The hint of a depth-conditioned ControlNet [frames, channels, height, width]: inverse depth [frames, height, width] in [0, 1],
-/// nearest = 1, repeated over the channels. Throws value_error at an inverse depth that is not finite.
+/// The hint of a depth-conditioned ControlNet [frames, channels, height, width]: inverse depth [frames, height, width]
+/// in [0, 1], nearest = 1, repeated over the channels. Throws value_error at an inverse depth that is not finite.
 template <class Real>
 stack<Real, 4> depth_hint(strided_view<float const, 3> inverse_depth, std::size_t channels = 3) {
     auto const [frames, height, width] = inverse_depth.extents();

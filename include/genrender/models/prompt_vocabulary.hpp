@@ -20,8 +20,9 @@ namespace genrender {
 inline constexpr std::array<std::string_view, 8> prompt_words{"checker", "stripes", "dots",  "bricks",
                                                               "marble",  "rings",   "plain", "camo"};
 
-/// Rows of the table of embeddings for a text: 0, then one for each word. Letter case does not matter; everything but letters and
-/// digits separates words. Throws value_error naming a word that is not among prompt_words, and those that are.
+/// Rows of the table of embeddings for a text: 0, then one for each word. Letter case does not matter; everything but
+/// letters and digits separates words. Throws value_error naming a word that is not among prompt_words, and those that
+/// are.
 inline std::vector<std::size_t> prompt_rows(std::string_view text) {
     std::vector<std::size_t> rows{0};
     std::string word;

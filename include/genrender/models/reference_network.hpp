@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR alg. 1: Phi] Stable Diffusion in miniature: a UNet and a depth ControlNet on the CPU, a model of the concept denoiser.
+// [GR sec. 3.1] Stable Diffusion in miniature: a UNet and a depth ControlNet on the CPU, a model of denoiser.
 #pragma once
 
 #include <genrender/core/parallel.hpp>
@@ -26,21 +26,22 @@
 namespace genrender {
 
 /// A UNet with classifier-free guidance and a ControlNet, conditioned for one animation. Its sites are the ControlNet's
-/// self-attention modules (network_kind::control) and then the UNet's, as they run. Features lie in host memory; frames run
-/// through `Loop`. Copies share the weights. Runs change nothing, so several threads may run one network at once.
+/// self-attention modules (network_kind::control) and then the UNet's, as they run. Features lie in host memory; frames
+/// run through `Loop`. Copies share the weights. Runs change nothing, so several threads may run one network at once.
 template <std::floating_point Real, parallel_loop Loop = sequential_loop>
 class reference_network {
 public:
     using real_type = Real;
     using features_type = host_features<Real>;
 
-    /// Takes the weights of both networks (those of Stable Diffusion 1.5 and its ControlNet in diffusers' layout fit, as do
-    /// weights<Real>::seeded). Throws value_error if the config cannot be built, the latents' grid cannot be halved as often as
-    /// the network does, or there is no frame; shape_error if the conditioning does not fit the config; file_error naming a tensor
-    /// that is missing, misshapen or left over.
+    /// Takes the weights of both networks (those of Stable Diffusion 1.5 and its ControlNet in diffusers' layout fit,
+    /// as do weights<Real>::seeded). Throws value_error if the config cannot be built, the latents' grid cannot be
+    /// halved as often as the network does, or there is no frame; shape_error if the conditioning does not fit the
+    /// config; file_error naming a tensor that is missing, misshapen or left over.
     reference_network(unet_config config, weights<Real>& unet_weights, weights<Real>& control_weights,
                       network_conditioning<Real> conditioning, Loop loop = {})
-        : config_((require_config(config), std::move(config))), conditioning_(std::move(conditioning)), loop_(std::move(loop)) {
+        : config_((require_config(config), std::move(config))), conditioning_(std::move(conditioning)),
+          loop_(std::move(loop)) {
         require_conditioning();
         site_list sites(latent_grid_);
         sites.begin(network_kind::control);
@@ -51,13 +52,14 @@ public:
         embed_hints();
     }
 
-    /// The tiny reference network with random weights, for inverse depth [frames, height, width] in [0, 1] (latents have half its
-    /// height and width) and a text of prompt_words. Throws as the constructor and prompt_rows do.
-    static reference_network seeded(strided_view<float const, 3> inverse_depth, std::string_view prompt, std::uint64_t seed,
-                                    Real guidance_scale = 2, Loop loop = {}, unet_config const& config = {}) {
+    /// The tiny reference network with random weights, for inverse depth [frames, height, width] in [0, 1] (latents
+    /// have half its height and width) and a text of prompt_words. Throws as the constructor and prompt_rows do.
+    static reference_network seeded(strided_view<float const, 3> inverse_depth, std::string_view prompt,
+                                    std::uint64_t seed, Real guidance_scale = 2, Loop loop = {},
+                                    unet_config const& config = {}) {
         auto source = reference_weights<Real>::seeded(seed);
-        return {config, source.unet, source.controlnet, source.conditioning(config, inverse_depth, prompt, guidance_scale),
-                std::move(loop)};
+        return {config, source.unet, source.controlnet,
+                source.conditioning(config, inverse_depth, prompt, guidance_scale), std::move(loop)};
     }
 
     unet_config const& config() const { return config_; }
@@ -69,16 +71,17 @@ public:
     /// Number of frames it has hints for.
     std::size_t frame_count() const { return hints_.size(); }
 
-    /// Writes D(z, sigma) [EDM eq. 7] into x0; both [frames, channels, height, width] of the latents, frames[i] being entry i's
-    /// place in the animation. The estimate of a frame under plain_attention is the same to the bit whatever else is in the stack
-    /// and however many threads Loop has. Throws shape_error if extents do not fit, value_error for a frame without a
-    /// hint or a sigma that is not finite and at least 0.
+    /// Writes D(z, sigma) [EDM eq. 7] into x0; both [frames, channels, height, width] of the latents, frames[i] being
+    /// entry i's place in the animation. The estimate of a frame under plain_attention is the same to the bit whatever
+    /// else is in the stack and however many threads Loop has. Throws shape_error if extents do not fit, value_error
+    /// for a frame without a hint or a sigma that is not finite and at least 0.
     template <class Processor>
-    void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma, std::span<frame_index const> frames,
-                    Processor& processor) const {
+    void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
+                    std::span<frame_index const> frames, Processor& processor) const {
         auto const function = "reference_network";
         require_shape(function, "z", z, {frames.size(), config_.in_channels, latent_grid_.height, latent_grid_.width});
-        require_shape(function, "x0", x0, {frames.size(), config_.out_channels, latent_grid_.height, latent_grid_.width});
+        require_shape(function, "x0", x0,
+                      {frames.size(), config_.out_channels, latent_grid_.height, latent_grid_.width});
         std::vector<feature_maps<Real> const*> hints;
         for (auto const frame : frames) {
             require_value(frame.value < hints_.size(), function, "frames", frame.value,
@@ -89,7 +92,8 @@ public:
         feature_maps<Real> in(frames.size(), latent_grid_, config_.in_channels);
         loop_(frames.size(), [&](std::size_t i) { copy_scaled(in.channels_first()[i], z[i], c_in); });
 
-        auto F = run(0, branches() == 1 ? conditioning_.prompt : conditioning_.empty_prompt, in, sigma, frames, hints, processor);
+        auto F = run(0, branches() == 1 ? conditioning_.prompt : conditioning_.empty_prompt, in, sigma, frames, hints,
+                     processor);
         if (branches() == 2) {
             auto F_cond = run(1, conditioning_.prompt, in, sigma, frames, hints, processor);
             guide(F.channels_first(), F.channels_first(), F_cond.channels_first(), conditioning_.guidance_scale);
@@ -110,8 +114,8 @@ private:
         require_value(hint.extent(3) % scale == 0, function, "width of hint", hint.extent(3), expected.c_str());
         latent_grid_ = {hint.extent(2) / scale, hint.extent(3) / scale};
         require_latent_grid(config_, latent_grid_);
-        require_value(std::isfinite(conditioning_.guidance_scale), function, "guidance_scale", conditioning_.guidance_scale,
-                      "a finite number");
+        require_value(std::isfinite(conditioning_.guidance_scale), function, "guidance_scale",
+                      conditioning_.guidance_scale, "a finite number");
         require_prompt("prompt", conditioning_.prompt);
         if (branches() == 2) {
             require_prompt("empty_prompt", conditioning_.empty_prompt);

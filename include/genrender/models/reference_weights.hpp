@@ -18,8 +18,8 @@
 
 namespace genrender {
 
-/// The weights of the three networks. In a file their tensors are named `unet.`, `controlnet.` and `prompt.` before the names
-/// that diffusers gives them.
+/// The weights of the three networks. In a file their tensors are named `unet.`, `controlnet.` and `prompt.` before the
+/// names that diffusers gives them.
 template <std::floating_point Real>
 struct reference_weights {
     weights<Real> unet;
@@ -32,12 +32,14 @@ struct reference_weights {
                 weights<Real>::seeded(seed, "prompt")};
     }
 
-    /// The weights of a file. Throws file_error as safetensors_file does, and for a tensor of none of the three networks.
+    /// The weights of a file. Throws file_error as safetensors_file does, and for a tensor of none of the three
+    /// networks.
     static reference_weights from_file(std::string const& path) {
         safetensors_file const file(path);
         for (auto const& [name, entry] : file.entries()) {
             if (!name.starts_with("unet.") && !name.starts_with("controlnet.") && !name.starts_with("prompt.")) {
-                throw file_error(path + ": tensor " + name + " belongs to no network, expected names that begin with unet., "
+                throw file_error(path + ": tensor " + name +
+                                 " belongs to no network, expected names that begin with unet., "
                                  "controlnet. or prompt.");
             }
         }
@@ -45,12 +47,13 @@ struct reference_weights {
                 weights<Real>::from_file(path, "prompt.")};
     }
 
-    /// What the network is told: inverse depth [frames, height, width] in [0, 1] and a text of prompt_words. Throws value_error
-    /// as depth_hint and prompt_rows do, file_error if the prompt table is missing or misshapen.
+    /// What the network is told: inverse depth [frames, height, width] in [0, 1] and a text of prompt_words. Throws
+    /// value_error as depth_hint and prompt_rows do, file_error if the prompt table is missing or misshapen.
     network_conditioning<Real> conditioning(unet_config const& config, strided_view<float const, 3> inverse_depth,
                                             std::string_view text, Real guidance_scale = 2) {
         prompt_vocabulary<Real> const vocabulary(prompt, config.cross_attention_dim);
-        return {depth_hint<Real>(inverse_depth, config.conditioning_channels), vocabulary(text), vocabulary(""), guidance_scale};
+        return {depth_hint<Real>(inverse_depth, config.conditioning_channels), vocabulary(text), vocabulary(""),
+                guidance_scale};
     }
 
     /// Writes every tensor that networks took so far, for from_file. Throws file_error if the file cannot be written.

@@ -12,8 +12,8 @@
 
 namespace genrender {
 
-/// Writes every token of `in` [tokens of grid, channels] into a square of 2 x 2 tokens of `out` [4 tokens, channels]. Throws
-/// shape_error if they do not fit.
+/// Writes every token of `in` [tokens of grid, channels] into a square of 2 x 2 tokens of `out` [4 tokens, channels].
+/// Throws shape_error if they do not fit.
 template <class Real>
 void repeat_twice(strided_view<Real, 2> out, in_view<Real, 2> in, grid_extents grid) {
     require_shape("repeat_twice", "in", in, {grid.size(), in.extent(1)});

@@ -18,13 +18,14 @@
 
 namespace genrender {
 
-/// shortcut(x) + conv2(silu(norm2(conv1(silu(norm1(x))) + W time))); the shortcut is a 1x1 convolution where the number of
-/// channels changes, else x itself.
+/// shortcut(x) + conv2(silu(norm2(conv1(silu(norm1(x))) + W time))); the shortcut is a 1x1 convolution where the number
+/// of channels changes, else x itself.
 template <class Real>
 class resnet_block {
 public:
     /// Takes `name.norm1`, `.conv1`, `.time_emb_proj`, `.norm2`, `.conv2` and, where channels change, `.conv_shortcut`.
-    resnet_block(unet_config const& config, weights<Real>& source, std::string const& name, std::size_t in, std::size_t out)
+    resnet_block(unet_config const& config, weights<Real>& source, std::string const& name, std::size_t in,
+                 std::size_t out)
         : norm1_(source, name + ".norm1", in, config.norm_num_groups, Real(1e-5)),
           conv1_(source, name + ".conv1", in, out),
           time_emb_proj_(source, name + ".time_emb_proj", config.time_channels(), out),

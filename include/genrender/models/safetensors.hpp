@@ -64,19 +64,20 @@ inline std::optional<std::uint64_t> checked_product(std::vector<std::size_t> con
 
 } // namespace detail
 
-/// The tensors of a safetensors file. The header is read and checked whole when the file is opened, each tensor when it is
-/// asked for; an object may be read from several threads.
+/// The tensors of a safetensors file. The header is read and checked whole when the file is opened, each tensor when it
+/// is asked for; an object may be read from several threads.
 class safetensors_file {
 public:
-    /// Opens a file. Throws file_error `path: what was found, expected ...` if it cannot be read, or is not a safetensors
-    /// file to the letter: lengths beyond the file, a header that is not the JSON it should be, keys that occur twice,
-    /// tensors whose bytes do not fit their shape, overlap, leave holes or lie outside.
+    /// Opens a file. Throws file_error `path: what was found, expected ...` if it cannot be read, or is not a
+    /// safetensors file to the letter: lengths beyond the file, a header that is not the JSON it should be, keys that
+    /// occur twice, tensors whose bytes do not fit their shape, overlap, leave holes or lie outside.
     explicit safetensors_file(std::string path) : path_(std::move(path)) {
         auto file = open();
         file.seekg(0, std::ios::end);
         auto const file_bytes = static_cast<std::uint64_t>(file.tellg());
         file.seekg(0);
-        require(file_bytes >= 8, "file has " + std::to_string(file_bytes) + " bytes", "at least the 8 of the header's length");
+        require(file_bytes >= 8, "file has " + std::to_string(file_bytes) + " bytes",
+                "at least the 8 of the header's length");
         std::uint64_t header_bytes = 0;
         read_bytes(file, &header_bytes, 8);
         require(header_bytes <= most_header_bytes, "header has " + std::to_string(header_bytes) + " bytes",
@@ -96,13 +97,13 @@ public:
     /// The texts under `__metadata__`.
     std::map<std::string, std::string> const& metadata() const { return metadata_; }
 
-    /// The elements of a tensor, row-major, converted to Real from F64, F32, F16 or BF16. Throws file_error if there is no
-    /// such tensor or it is of another type.
+    /// The elements of a tensor, row-major, converted to Real from F64, F32, F16 or BF16. Throws file_error if there is
+    /// no such tensor or it is of another type.
     template <std::floating_point Real>
     std::vector<Real> read(std::string const& name) const {
         auto const found = entries_.find(name);
-        require(found != entries_.end(), "there is no tensor " + name, "one among the " + std::to_string(entries_.size()) +
-                                                                           " of the file");
+        require(found != entries_.end(), "there is no tensor " + name,
+                "one among the " + std::to_string(entries_.size()) + " of the file");
         auto const& entry = found->second;
         std::vector<char> bytes(entry.end - entry.begin);
         auto file = open();
@@ -138,8 +139,8 @@ private:
 
     void read_bytes(std::ifstream& file, void* to, std::uint64_t count) const {
         file.read(static_cast<char*>(to), static_cast<std::streamsize>(count));
-        require(static_cast<std::uint64_t>(file.gcount()) == count, "file ends after " + std::to_string(file.gcount()) + " bytes",
-                std::to_string(count) + " to read");
+        require(static_cast<std::uint64_t>(file.gcount()) == count,
+                "file ends after " + std::to_string(file.gcount()) + " bytes", std::to_string(count) + " to read");
     }
 
     /// JSON itself lets the last of equal keys win; here they are an error, because readers differ.
@@ -168,9 +169,10 @@ private:
         require(header.is_object(), "header is a JSON " + std::string(header.type_name()), "an object of tensors");
         for (auto const& [name, value] : header.items()) {
             if (name == "__metadata__") {
-                require(value.is_object(), "__metadata__ is a JSON " + std::string(value.type_name()), "an object of strings");
+                require(value.is_object(), "__metadata__ is " + std::string(value.type_name()), "an object of strings");
                 for (auto const& [key, word] : value.items()) {
-                    require(word.is_string(), "__metadata__ has a " + std::string(word.type_name()) + " for " + key, "a string");
+                    auto const found = "__metadata__ has a " + std::string(word.type_name()) + " for " + key;
+                    require(word.is_string(), found, "a string");
                     metadata_[key] = word.get<std::string>();
                 }
             } else {
@@ -188,7 +190,8 @@ private:
         };
         auto const is_text = [](nlohmann::json const& json) { return json.is_string(); };
         auto const is_counts = [](nlohmann::json const& json) {
-            return json.is_array() && std::all_of(json.begin(), json.end(), [](auto const& x) { return x.is_number_unsigned(); });
+            return json.is_array() &&
+                   std::all_of(json.begin(), json.end(), [](auto const& x) { return x.is_number_unsigned(); });
         };
         safetensors_entry entry;
         entry.dtype = field("dtype", is_text, "the name of a type").get<std::string>();
@@ -196,7 +199,8 @@ private:
             entry.shape.push_back(extent.get<std::size_t>());
         }
         auto const offsets = field("data_offsets", is_counts, "two whole numbers of at least 0");
-        require(offsets.size() == 2, "tensor " + name + " has " + std::to_string(offsets.size()) + " data_offsets", "two");
+        require(offsets.size() == 2, "tensor " + name + " has " + std::to_string(offsets.size()) + " data_offsets",
+                "two");
         entry.begin = offsets[0].get<std::uint64_t>();
         entry.end = offsets[1].get<std::uint64_t>();
         return entry;
@@ -208,7 +212,8 @@ private:
             auto const& [name, entry] = item;
             auto const place = "tensor " + name + " has data_offsets " + extents_text({entry.begin, entry.end});
             require(entry.begin <= entry.end, place, "begin <= end");
-            require(entry.end <= data_bytes, place, "an end within the " + std::to_string(data_bytes) + " bytes of data");
+            require(entry.end <= data_bytes, place,
+                    "an end within the " + std::to_string(data_bytes) + " bytes of data");
             if (auto const bytes = detail::element_bytes(entry.dtype)) {
                 auto shape = entry.shape;
                 shape.push_back(*bytes);
@@ -226,12 +231,15 @@ private:
         std::string before = "the header";
         for (auto const* item : in_order) {
             auto const place = "tensor " + item->first + " begins at byte " + std::to_string(item->second.begin);
-            require(item->second.begin >= end, place, std::to_string(end) + " where " + before + " ends (they overlap)");
-            require(item->second.begin <= end, place, std::to_string(end) + " where " + before + " ends (there is a hole)");
+            require(item->second.begin >= end, place,
+                    std::to_string(end) + " where " + before + " ends (they overlap)");
+            require(item->second.begin <= end, place,
+                    std::to_string(end) + " where " + before + " ends (there is a hole)");
             end = item->second.end;
             before = "tensor " + item->first;
         }
-        require(end == data_bytes, "data has " + std::to_string(data_bytes) + " bytes", std::to_string(end) + " where " + before + " ends");
+        require(end == data_bytes, "data has " + std::to_string(data_bytes) + " bytes",
+                std::to_string(end) + " where " + before + " ends");
     }
 
     template <class Real, class Stored, class Convert>
@@ -260,8 +268,8 @@ struct safetensors_source {
 /// How a tensor's elements are stored.
 enum class safetensors_storage { f32, f16 };
 
-/// Writes the tensors in the order of their names, data aligned to 8 bytes. Throws shape_error if values do not fill their
-/// shape, file_error if the file cannot be written.
+/// Writes the tensors in the order of their names, data aligned to 8 bytes. Throws shape_error if values do not fill
+/// their shape, file_error if the file cannot be written.
 inline void write_safetensors(std::string const& path, std::map<std::string, safetensors_source> const& tensors,
                               safetensors_storage storage = safetensors_storage::f32) {
     auto const halves = storage == safetensors_storage::f16;
@@ -276,14 +284,14 @@ inline void write_safetensors(std::string const& path, std::map<std::string, saf
             data.append(halves ? reinterpret_cast<char const*>(&half) : reinterpret_cast<char const*>(&value),
                         halves ? sizeof half : sizeof value);
         }
-        header[name] = {{"dtype", halves ? "F16" : "F32"}, {"shape", source.shape}, {"data_offsets", {begin, data.size()}}};
+        header[name] = {
+            {"dtype", halves ? "F16" : "F32"}, {"shape", source.shape}, {"data_offsets", {begin, data.size()}}};
     }
     auto text = header.dump();
     text.append((8 - text.size() % 8) % 8, ' ');
     auto const text_bytes = std::uint64_t{text.size()};
     std::ofstream file(path, std::ios::binary);
-    file.write(reinterpret_cast<char const*>(&text_bytes), 8);
-    file << text << data << std::flush;
+    file.write(reinterpret_cast<char const*>(&text_bytes), 8) << text << data << std::flush;
     if (!file) {
         throw file_error(path + ": file cannot be written, expected a writable place");
     }

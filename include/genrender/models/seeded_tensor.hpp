@@ -11,14 +11,16 @@
 #include <string_view>
 #include <vector>
 
-// Nobody trained the reference network, and yet its output is shown. White random kernels show white noise, so kernels lean to
-// the low frequencies, as an untrained convolutional network does anyway (Ulyanov et al. 2018, 'Deep Image Prior'). The rest is
-// there so that pictures answer to what they should:
-// - to the noise: the last convolution is the first one turned round, and the skip between them is passed on, so the clean estimate
-//   resembles what it is given. Sampling turns that into feedback: chance decides, smoothing spreads and the norms bound it.
+// Nobody trained the reference network, and yet its output is shown. White random kernels show white noise, so kernels
+// lean to the low frequencies, as an untrained convolutional network does anyway (Ulyanov et al. 2018, 'Deep Image
+// Prior'). The rest is there so that pictures answer to what they should:
+// - to the noise: the last convolution is the first one turned round, and the skip between them is passed on, so the
+//   clean estimate resembles what it is given. Sampling turns that into feedback: chance decides, smoothing spreads and
+//   the norms bound it.
 // - to the depth: the ControlNet's zero convolutions are not zero, as they are before training.
 // - to the prompt: cross-attention speaks louder than the rest.
-// The three detail bands of the output (haar.hpp) are slopes of the mean band, so that pictures have no blocks of 2 x 2 pixels.
+// The three detail bands of the output (haar.hpp) are slopes of the mean band, so that pictures have no blocks of 2 x 2
+// pixels.
 
 namespace genrender {
 
@@ -32,17 +34,22 @@ constexpr std::uint64_t hash_of(std::string_view text, std::uint64_t hash = 0xCB
     return hash;
 }
 
-/// How loud a layer is, relative to outputs of unit variance for inputs of unit variance. Chosen by looking at pictures.
+/// How loud a layer is, relative to outputs of unit variance for inputs of unit variance. Chosen by looking at
+/// pictures.
 inline float seeded_gain(std::string_view name) {
     struct rule {
         std::string_view part;
         float gain;
     };
     constexpr std::array rules{
-        rule{"attn1.to_q", 2.0f},        rule{"attn1.to_k", 2.0f}, // attention that picks some tokens, not the mean of all
-        rule{"attn2.to_out", 3.0f},      rule{"controlnet_cond_embedding", 1.5f},
-        rule{"time_emb_proj", 0.3f},     rule{"conv_shortcut", 0.7f},
-        rule{"conv_out.weight", 0.95f},  rule{"controlnet_down_blocks", 1.7f},
+        rule{"attn1.to_q", 2.0f},
+        rule{"attn1.to_k", 2.0f}, // attention that picks some tokens, not the mean of all
+        rule{"attn2.to_out", 3.0f},
+        rule{"controlnet_cond_embedding", 1.5f},
+        rule{"time_emb_proj", 0.3f},
+        rule{"conv_shortcut", 0.7f},
+        rule{"conv_out.weight", 0.95f},
+        rule{"controlnet_down_blocks", 1.7f},
     };
     for (auto const& [part, gain] : rules) {
         if (name.find(part) != std::string_view::npos) {
@@ -52,14 +59,16 @@ inline float seeded_gain(std::string_view name) {
     return 1;
 }
 
-/// The direction among the features that stands for a latent channel: a part that all share, so that colours are not all shrill, and
-/// one of its own. Features come in opposite pairs, whose rectified sum has no mean, so that no picture is bleached.
+/// The direction among the features that stands for a latent channel: a part that all share, so that colours are not
+/// all shrill, and one of its own. Features come in opposite pairs, whose rectified sum has no mean, so that no picture
+/// is bleached.
 inline float seeded_palette(std::uint64_t seed, std::size_t latent, std::size_t feature) {
     auto const direction = [&](std::uint32_t row) {
         return static_cast<float>(
             normal_value(seed, random_stream::weights, {row, static_cast<std::uint32_t>(feature / 2), 0x0050414CU}));
     };
-    return (feature % 2 == 0 ? 1.0f : -1.0f) * (0.6f * direction(0) + 0.8f * direction(static_cast<std::uint32_t>(latent) + 1));
+    return (feature % 2 == 0 ? 1.0f : -1.0f) *
+           (0.6f * direction(0) + 0.8f * direction(static_cast<std::uint32_t>(latent) + 1));
 }
 
 /// One tap of a smooth 3x3 kernel: a binomial blur mixed with the identity.
@@ -79,9 +88,9 @@ constexpr float slope_tap(std::size_t row, std::size_t column, std::size_t band)
 
 } // namespace detail
 
-/// The elements of a random tensor [out, in, ...], row-major, that depend on its name and `network` alone beside the seed.
-/// Matrices and 1x1 kernels are N(0, gain^2 / in); 3x3 kernels are blurs of random sign and strength with a little white noise;
-/// scales of norms are 1, biases N(0, 0.01), embeddings of words N(0, 1).
+/// The elements of a random tensor [out, in, ...], row-major, that depend on its name and `network` alone beside the
+/// seed. Matrices and 1x1 kernels are N(0, gain^2 / in); 3x3 kernels are blurs of random sign and strength with a
+/// little white noise; scales of norms are 1, biases N(0, 0.01), embeddings of words N(0, 1).
 inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view network, std::string_view name,
                                         std::vector<std::size_t> const& shape) {
     std::size_t count = 1;
@@ -90,9 +99,9 @@ inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view net
     }
     auto const hash = detail::hash_of(name, detail::hash_of(network));
     auto const normal = [&](std::size_t i) {
-        return static_cast<float>(normal_value(seed, random_stream::weights,
-                                               {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32),
-                                                static_cast<std::uint32_t>(i)}));
+        return static_cast<float>(normal_value(
+            seed, random_stream::weights,
+            {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32), static_cast<std::uint32_t>(i)}));
     };
     // Of an output with the four bands of haar.hpp, the first quarter are means; elsewhere nothing asks.
     auto const is_first = name == "conv_in.weight";
@@ -123,9 +132,10 @@ inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view net
             auto const out = pair / inputs;
             auto const in = pair % inputs;
             auto const band = is_last ? out / means : 0;
-            auto const strength = scale * (is_first  ? (in < inputs / 4 ? 3.5f : 0.35f) * detail::seeded_palette(seed, in, out)
-                                           : is_last ? detail::seeded_palette(seed, out % means, in)
-                                                     : 1.3f * normal(count + pair));
+            auto const strength =
+                scale * (is_first  ? (in < inputs / 4 ? 3.5f : 0.35f) * detail::seeded_palette(seed, in, out)
+                         : is_last ? detail::seeded_palette(seed, out % means, in)
+                                   : 1.3f * normal(count + pair));
             auto const blur = is_first || is_last ? 0.5f : 1.0f;
             for (std::size_t tap = 0; tap < 9; ++tap) {
                 auto& value = values[pair * 9 + tap];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A transformer block between feature maps (diffusers' Transformer2DModel with convolutions, as in Stable Diffusion 1.5).
+// A transformer block between feature maps (diffusers' Transformer2DModel, as in Stable Diffusion 1.5).
 #pragma once
 
 #include <genrender/models/conv2d.hpp>
@@ -23,7 +23,8 @@ public:
         : norm_(source, name + ".norm", config.block_out_channels[level], config.norm_num_groups, Real(1e-6)),
           proj_in_(source, name + ".proj_in", config.block_out_channels[level], config.block_out_channels[level], 1),
           block_(config, source, sites, name + ".transformer_blocks.0", level, part),
-          proj_out_(source, name + ".proj_out", config.block_out_channels[level], config.block_out_channels[level], 1) {}
+          proj_out_(source, name + ".proj_out", config.block_out_channels[level], config.block_out_channels[level], 1) {
+    }
 
     /// Runs in place of x [frames, tokens, channels].
     template <class Pass>

@@ -13,9 +13,9 @@
 
 namespace genrender {
 
-/// The features of a time t (Vaswani et al. 2017, sec. 3.5) [channels]: cos(t w_i) for i < channels / 2, then sin(t w_i), with
-/// w_i = 10000^(-2 i / channels); diffusers' Timesteps with flip_sin_to_cos and downscale_freq_shift = 0. Expects an even
-/// number of channels.
+/// The features of a time t (Vaswani et al. 2017, sec. 3.5) [channels]: cos(t w_i) for i < channels / 2, then sin(t
+/// w_i), with w_i = 10000^(-2 i / channels); diffusers' Timesteps with flip_sin_to_cos and downscale_freq_shift = 0.
+/// Expects an even number of channels.
 template <class Real>
 std::vector<Real> sinusoids(Real t, std::size_t channels) {
     auto const half = channels / 2;

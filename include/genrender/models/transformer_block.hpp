@@ -23,7 +23,8 @@ namespace genrender {
 template <class Real>
 class transformer_block {
 public:
-    /// Takes `name.norm1`, `.attn1`, `.norm2`, `.attn2`, `.norm3` and `.ff`, and enters `name.attn1` into the list of sites.
+    /// Takes `name.norm1`, `.attn1`, `.norm2`, `.attn2`, `.norm3` and `.ff`, and enters `name.attn1` into the list of
+    /// sites.
     transformer_block(unet_config const& config, weights<Real>& source, site_list& sites, std::string const& name,
                       std::size_t level, network_part part)
         : site_(sites.add(name + ".attn1", part, level, config.block_out_channels[level])),
@@ -36,7 +37,8 @@ public:
           norm3_(source, name + ".norm3", config.block_out_channels[level]),
           ff_(source, name + ".ff", config.block_out_channels[level]) {}
 
-    /// Runs the block in place of h [frames, tokens, channels]. Throws shape_error if the processor returns other extents.
+    /// Runs the block in place of h [frames, tokens, channels]. Throws shape_error if the processor returns other
+    /// extents.
     template <class Pass>
     void operator()(Pass const& pass, feature_maps<Real>& h) const {
         attend_to_features(pass, h);

@@ -21,8 +21,8 @@ namespace genrender {
 template <class Real>
 class up_block {
 public:
-    /// Block `number` of the way up, at level levels - 1 - number. Takes `up_blocks.number.resnets.i`, `.attentions.i` and, except
-    /// at the finest level, `.upsamplers.0`.
+    /// Block `number` of the way up, at level levels - 1 - number. Takes `up_blocks.number.resnets.i`, `.attentions.i`
+    /// and, except at the finest level, `.upsamplers.0`.
     up_block(unet_config const& config, weights<Real>& source, site_list& sites, std::size_t number) {
         auto const name = "up_blocks." + std::to_string(number);
         auto const level = config.levels() - 1 - number;
@@ -35,7 +35,8 @@ public:
             auto const index = "." + std::to_string(i);
             resnets_.emplace_back(config, source, name + ".resnets" + index, in + skip, out);
             if (config.level_has_attention[level]) {
-                attentions_.emplace_back(config, source, sites, name + ".attentions" + index, level, network_part::decoder);
+                attentions_.emplace_back(config, source, sites, name + ".attentions" + index, level,
+                                         network_part::decoder);
             }
             in = out;
         }
@@ -46,7 +47,8 @@ public:
 
     /// Runs h, joined by the last of the skips before each resnet; removes them from the list.
     template <class Pass>
-    feature_maps<Real> operator()(Pass const& pass, feature_maps<Real> h, std::vector<feature_maps<Real>>& skips) const {
+    feature_maps<Real> operator()(Pass const& pass, feature_maps<Real> h,
+                                  std::vector<feature_maps<Real>>& skips) const {
         for (std::size_t i = 0; i < resnets_.size(); ++i) {
             auto const skip = std::move(skips.back());
             skips.pop_back();
@@ -70,11 +72,13 @@ private:
 template <class Real>
 class unet {
 public:
-    /// Takes every tensor of diffusers' UNet2DConditionModel from `source` and enters its self-attention modules into `sites`.
-    /// Throws value_error if the config cannot be built, file_error if a tensor is missing, misshapen or left over.
+    /// Takes every tensor of diffusers' UNet2DConditionModel from `source` and enters its self-attention modules into
+    /// `sites`. Throws value_error if the config cannot be built, file_error if a tensor is missing, misshapen or left
+    /// over.
     unet(unet_config const& config, weights<Real>& source, site_list& sites)
         : encoder_((require_config(config), config), source, sites),
-          conv_norm_out_(source, "conv_norm_out", config.block_out_channels.front(), config.norm_num_groups, Real(1e-5)),
+          conv_norm_out_(source, "conv_norm_out", config.block_out_channels.front(), config.norm_num_groups,
+                         Real(1e-5)),
           conv_out_(source, "conv_out", config.block_out_channels.front(), config.out_channels) {
         for (std::size_t number = 0; number < config.levels(); ++number) {
             up_blocks_.emplace_back(config, source, sites, number);

@@ -12,21 +12,23 @@
 
 namespace genrender {
 
-/// What diffusers' `UNet2DConditionModel` and `ControlNetModel` are built from. The defaults are the tiny reference network: 12
-/// latent channels (RGB after one Haar transform), three levels, self-attention at the middle level and the bottom. With
-/// block_out_channels {320, 640, 1280, 1280}, norm_num_groups 32 and the like it is Stable Diffusion 1.5.
+/// What diffusers' `UNet2DConditionModel` and `ControlNetModel` are built from. The defaults are the tiny reference
+/// network: 12 latent channels (RGB after one Haar transform), three levels, self-attention at the middle level and the
+/// bottom. With block_out_channels {320, 640, 1280, 1280}, norm_num_groups 32 and the like it is Stable Diffusion 1.5.
 struct unet_config {
-    std::size_t in_channels = 12;                              ///< of the latents
-    std::size_t out_channels = 12;                             ///< of the prediction
-    std::vector<std::size_t> block_out_channels{32, 48, 64};   ///< one a level, from the finest; each next level halves the grid
-    std::vector<bool> level_has_attention{false, true, false}; ///< down_block_types: CrossAttnDownBlock2D or DownBlock2D
-    std::size_t layers_per_block = 1;                          ///< resnets a level on the way down; one more on the way up
-    std::vector<std::size_t> attention_head_dim{1, 2, 2};      ///< a level; it is the *number* of heads, as in SD 1.5
-    std::size_t cross_attention_dim = 48;                      ///< channels of a prompt token
-    std::size_t norm_num_groups = 8;                           ///< of every GroupNorm
-    std::size_t conditioning_channels = 3;                     ///< of the ControlNet's hint; depth is repeated over them
+    std::size_t in_channels = 12;  ///< of the latents
+    std::size_t out_channels = 12; ///< of the prediction
+    std::vector<std::size_t> block_out_channels{32, 48,
+                                                64}; ///< one a level, from the finest; each next level halves the grid
+    std::vector<bool> level_has_attention{false, true,
+                                          false};         ///< down_block_types: CrossAttnDownBlock2D or DownBlock2D
+    std::size_t layers_per_block = 1;                     ///< resnets a level on the way down; one more on the way up
+    std::vector<std::size_t> attention_head_dim{1, 2, 2}; ///< a level; it is the *number* of heads, as in SD 1.5
+    std::size_t cross_attention_dim = 48;                 ///< channels of a prompt token
+    std::size_t norm_num_groups = 8;                      ///< of every GroupNorm
+    std::size_t conditioning_channels = 3;                ///< of the ControlNet's hint; depth is repeated over them
     std::vector<std::size_t> conditioning_embedding_out_channels{16, 24}; ///< each after the first halves the hint
-    prediction prediction_type = prediction::clean;            ///< what the output stands for
+    prediction prediction_type = prediction::clean;                       ///< what the output stands for
 
     std::size_t levels() const { return block_out_channels.size(); }
     /// Channels of the embedding of time, 4 * block_out_channels[0].
@@ -37,8 +39,8 @@ struct unet_config {
     std::size_t grid_divisor() const { return std::size_t{1} << (levels() - 1); }
 };
 
-/// Throws value_error unless a network can be built: at least one level, one entry a level everywhere, no zero, groups that
-/// divide the channels they normalise, heads that divide theirs.
+/// Throws value_error unless a network can be built: at least one level, one entry a level everywhere, no zero, groups
+/// that divide the channels they normalise, heads that divide theirs.
 inline void require_config(unet_config const& config) {
     auto const function = "unet_config";
     auto const one_a_level = "one entry for each of block_out_channels";

@@ -22,8 +22,9 @@ namespace genrender {
 /// What comes out of the way down.
 template <class Real>
 struct encoded_maps {
-    std::vector<feature_maps<Real>> skips; ///< after conv_in, each resnet (and its attention), each downsampler, in that order
-    feature_maps<Real> middle;             ///< after the mid block
+    std::vector<feature_maps<Real>>
+        skips;                 ///< after conv_in, each resnet (and its attention), each downsampler, in that order
+    feature_maps<Real> middle; ///< after the mid block
 };
 
 /// One level of the way down (diffusers' DownBlock2D and CrossAttnDownBlock2D).
@@ -39,7 +40,8 @@ public:
             auto const number = "." + std::to_string(i);
             resnets_.emplace_back(config, source, name + ".resnets" + number, in, out);
             if (config.level_has_attention[level]) {
-                attentions_.emplace_back(config, source, sites, name + ".attentions" + number, level, network_part::encoder);
+                attentions_.emplace_back(config, source, sites, name + ".attentions" + number, level,
+                                         network_part::encoder);
             }
             in = out;
         }
@@ -86,8 +88,8 @@ public:
         mid_resnets_.emplace_back(config, source, "mid_block.resnets.1", channels, channels);
     }
 
-    /// Runs z [frames, tokens, in_channels] at time t; `hint` [frames, tokens, block_out_channels[0]], if there is one, is added
-    /// after conv_in. Leaves the embedding of t in `pass.time`.
+    /// Runs z [frames, tokens, in_channels] at time t; `hint` [frames, tokens, block_out_channels[0]], if there is one,
+    /// is added after conv_in. Leaves the embedding of t in `pass.time`.
     template <class Pass>
     encoded_maps<Real> operator()(Pass& pass, feature_maps<Real> const& z, Real t,
                                   std::vector<feature_maps<Real> const*> const& hint = {}) const {

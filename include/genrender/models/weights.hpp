@@ -23,8 +23,8 @@ namespace genrender {
 template <std::floating_point Real>
 class weights {
 public:
-    /// The tensors of a safetensors file whose names begin with `prefix`, known by the rest of the name; converted as they are
-    /// taken. Throws file_error as safetensors_file does.
+    /// The tensors of a safetensors file whose names begin with `prefix`, known by the rest of the name; converted as
+    /// they are taken. Throws file_error as safetensors_file does.
     static weights from_file(std::string const& path, std::string prefix = "") {
         weights result;
         result.file_.emplace(path);
@@ -32,8 +32,8 @@ public:
         return result;
     }
 
-    /// Random tensors, made as they are taken (see seeded_tensor), equal for equal seeds whatever is taken and in what order.
-    /// `network` sets networks with the same names for their tensors apart.
+    /// Random tensors, made as they are taken (see seeded_tensor), equal for equal seeds whatever is taken and in what
+    /// order. `network` sets networks with the same names for their tensors apart.
     static weights seeded(std::uint64_t seed, std::string network) {
         weights result;
         result.seed_ = seed;
@@ -41,8 +41,8 @@ public:
         return result;
     }
 
-    /// The elements of tensor `name`, row-major. Throws file_error `path: there is no tensor ...` or `path: tensor ... is [..],
-    /// expected [..]`.
+    /// The elements of tensor `name`, row-major. Throws file_error `path: there is no tensor ...` or `path: tensor ...
+    /// is [..], expected [..]`.
     std::vector<Real> take(std::string const& name, std::vector<std::size_t> const& shape) {
         taken_.insert_or_assign(name, shape);
         if (file_) {
@@ -52,8 +52,8 @@ public:
                                  extents_text(shape));
             }
             if (found->second.shape != shape) {
-                throw file_error(file_->path() + ": tensor " + found->first + " is " + extents_text(found->second.shape) +
-                                 ", expected " + extents_text(shape));
+                throw file_error(file_->path() + ": tensor " + found->first + " is " +
+                                 extents_text(found->second.shape) + ", expected " + extents_text(shape));
             }
             return file_->template read<Real>(found->first);
         }
@@ -75,8 +75,8 @@ public:
             }
         }
         if (count > 0) {
-            throw file_error(file_->path() + ": " + std::to_string(count) + " tensors have no place in the network: " + surplus +
-                             (count > 5 ? ", ..." : "") + ", expected none");
+            throw file_error(file_->path() + ": " + std::to_string(count) + " tensors have no place in the network: " +
+                             surplus + (count > 5 ? ", ..." : "") + ", expected none");
         }
     }
 
@@ -96,13 +96,14 @@ public:
     std::map<std::string, std::vector<float>> values() const {
         std::map<std::string, std::vector<float>> result;
         for (auto const& [name, shape] : taken_) {
-            result[name] = file_ ? file_->template read<float>(prefix_ + name) : seeded_tensor(seed_, network_, name, shape);
+            result[name] =
+                file_ ? file_->template read<float>(prefix_ + name) : seeded_tensor(seed_, network_, name, shape);
         }
         return result;
     }
 
-    /// Writes all tensors taken so far into a safetensors file, from which from_file gives equal ones. Throws file_error if
-    /// the file cannot be written.
+    /// Writes all tensors taken so far into a safetensors file, from which from_file gives equal ones. Throws
+    /// file_error if the file cannot be written.
     void save(std::string const& path, safetensors_storage storage = safetensors_storage::f32) const {
         auto const tensors = values();
         std::map<std::string, safetensors_source> sources;
