@@ -13,15 +13,17 @@ using namespace genrender;
 
 int main(int argc, char** argv) try {
     if (argc < 3) {
-        std::fprintf(stderr, "blender_maps SCENE FOLDER [FRAMES] [PIXELS]: scenes are camera_rotation, bouncing_balls and "
-                             "walking_figure\n");
+        std::fprintf(stderr,
+                     "blender_maps SCENE FOLDER [FRAMES] [PIXELS]: scenes are camera_rotation, bouncing_balls and "
+                     "walking_figure\n");
         return 2;
     }
     std::size_t const frames = argc > 3 ? std::stoul(argv[3]) : 8;
     std::size_t const pixels = argc > 4 ? std::stoul(argv[4]) : 256;
     auto const guidance = rasterize(scenes::make_scene(argv[1], frames), {pixels, pixels}, threaded_loop());
 
-    // Channels ViewLayer.UV.U/V/A, ViewLayer.Depth.Z and ViewLayer.IndexOB.X in 32 bits; v upwards, background at depth 1e10.
+    // Channels ViewLayer.UV.U/V/A, ViewLayer.Depth.Z and ViewLayer.IndexOB.X in 32 bits; v upwards, background at depth
+    // 1e10.
     auto const files = examples::write_exr_maps(argv[2], guidance.uv, guidance.depth);
     std::printf("%zu files, the first is %s\n", files.size(), files.front().c_str());
 } catch (std::exception const& error) {

@@ -28,15 +28,18 @@ reference_network<float, threaded_loop> make_denoiser(render_options const& opti
     auto weights = options.weights.empty() ? reference_weights<float>::seeded(options.seed)
                                            : reference_weights<float>::from_file(options.weights.string());
     auto const hint = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
-    return {config, weights.unet, weights.controlnet, weights.conditioning(config, to_view(hint), options.prompt), loop};
+    return {config, weights.unet, weights.controlnet, weights.conditioning(config, to_view(hint), options.prompt),
+            loop};
 }
 
-void run(render_options const& options, guidance_source const& source, threaded_loop const& loop, stopwatch const& total) {
+void run(render_options const& options, guidance_source const& source, threaded_loop const& loop,
+         stopwatch const& total) {
     auto const phi = make_denoiser(options, source, loop);
 
     render_report report;
     stopwatch const rendering;
-    auto const z = render(phi, to_uv_view(source.guidance.uv), options.settings, report, progress_line(options.is_quiet), loop);
+    auto const z =
+        render(phi, to_uv_view(source.guidance.uv), options.settings, report, progress_line(options.is_quiet), loop);
     auto const rendering_seconds = rendering.seconds();
 
     auto const images = decoded(z);

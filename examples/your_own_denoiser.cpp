@@ -79,7 +79,8 @@ struct graph_denoiser : my_denoiser {
             }
         }
         denoise(x0, z, sigma, [&](attention_place place, my_tensor const& f) {
-            outputs[place] = {f, my_engine::self_attention_of_graph(net.modules[place.site.value], f, inputs.at(place))};
+            outputs[place] = {f,
+                              my_engine::self_attention_of_graph(net.modules[place.site.value], f, inputs.at(place))};
             return outputs[place][1];
         });
         // After: the keyframes' features, as the engine's own tensors.

@@ -43,8 +43,8 @@ Tensor first_frames(Tensor const& all, std::size_t count) {
 
 /// Whole frames of `size` pixels of height that show maps of `grid`. Throws value_error if pixels would be cut.
 inline grid_extents image_extents(grid_extents grid, std::size_t size) {
-    require_value(size <= grid.height && grid.height % size == 0 && grid.width % (grid.height / size) == 0, "--size", "height",
-                  size, ("a divisor of the maps' " + extents_text({grid.height, grid.width})).c_str());
+    require_value(size <= grid.height && grid.height % size == 0 && grid.width % (grid.height / size) == 0, "--size",
+                  "height", size, ("a divisor of the maps' " + extents_text({grid.height, grid.width})).c_str());
     return {size, grid.width / (grid.height / size)};
 }
 
@@ -60,8 +60,8 @@ inline void add_notes_on(std::vector<std::string>& notes, uv_report const& repor
 
 } // namespace detail
 
-/// The guidance that the options ask for. Throws file_error for files that cannot be used, value_error for options that do not
-/// fit what is read.
+/// The guidance that the options ask for. Throws file_error for files that cannot be used, value_error for options that
+/// do not fit what is read.
 template <parallel_loop Loop>
 guidance_source load_guidance(render_options const& options, Loop const& loop) {
     guidance_source source;

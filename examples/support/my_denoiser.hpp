@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a denoiser made of my_engine is, whichever way its attention is wired: sites, branches, the way of latents through it.
+// What a denoiser made of my_engine is, whichever way its attention is wired: sites, branches, the way of latents
+// through it.
 #pragma once
 
 #include "my_engine.hpp"
@@ -46,7 +47,8 @@ struct my_denoiser {
     }
     static strided_view<float, 4> channels_first(my_engine::tensor const& t) {
         auto const [frame, token, channel] = t.strides;
-        return {t.memory.get(), {t.sizes[0], t.sizes[2], grid.height, grid.width},
+        return {t.memory.get(),
+                {t.sizes[0], t.sizes[2], grid.height, grid.width},
                 {frame, channel, token * std::ptrdiff_t{grid.width}, token}};
     }
 };

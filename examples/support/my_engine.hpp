@@ -166,13 +166,15 @@ struct self_attention {
     linear out;
 
     static self_attention with_phase(double phase) {
-        return {{channels, channels, phase}, {channels, channels, phase + 0.1}, {channels, channels, phase + 0.2},
+        return {{channels, channels, phase},
+                {channels, channels, phase + 0.1},
+                {channels, channels, phase + 0.2},
                 {channels, channels, phase + 0.3}};
     }
 };
 
-/// A self-attention module as it is built into a static graph, of the engine's operations alone. `in` are the graph's extra
-/// inputs at the module, named as genrender::feature_inputs names them.
+/// A self-attention module as it is built into a static graph, of the engine's operations alone. `in` are the graph's
+/// extra inputs at the module, named as genrender::feature_inputs names them.
 template <class Inputs>
 tensor self_attention_of_graph(self_attention const& module, tensor const& f, Inputs const& in) {
     key_values const own{module.key(f), module.value(f)};

@@ -35,8 +35,8 @@ inline std::string duration_text(double seconds) {
     return std::to_string(whole / 60) + " min " + (rest.size() < 2 ? "0" : "") + rest + " s";
 }
 
-/// An observer that keeps one line up to date on a terminal, prints a line a step elsewhere and nothing if `is_quiet`. Ctrl-C
-/// ends the run in good order.
+/// An observer that keeps one line up to date on a terminal, prints a line a step elsewhere and nothing if `is_quiet`.
+/// Ctrl-C ends the run in good order.
 inline progress_observer progress_line(bool is_quiet) {
     std::signal(SIGINT, [](int) { detail::was_interrupted() = true; });
     auto const is_terminal = isatty(STDERR_FILENO) != 0;

@@ -60,8 +60,9 @@ inline std::string listed(auto const& names, char const* separator) {
 inline render_options parse_render_options(int argc, char const* const* argv) {
     render_options options;
     auto& settings = options.settings;
-    CLI::App app("Renders an animated, untextured 3D scene as a stylised animation: UV and depth maps guide a 2D diffusion\n"
-                 "network, whose features are kept consistent along the surfaces (Generative Rendering, Alg. 1).");
+    CLI::App app(
+        "Renders an animated, untextured 3D scene as a stylised animation: UV and depth maps guide a 2D diffusion\n"
+        "network, whose features are kept consistent along the surfaces (Generative Rendering, Alg. 1).");
     app.get_formatter()->column_width(34);
     // Descriptions say what is allowed; the checks' own would say it again in another tongue.
     auto const positive = CLI::Range(std::size_t{1}, std::size_t{1} << 20).description("");
@@ -72,16 +73,21 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     input->add_option("--scene", options.scene, "built-in scene: " + detail::listed(scenes::names, ", "))
         ->check(one_of(names_type(scenes::names.begin(), scenes::names.end())))
         ->type_name("NAME");
-    input->add_option("--model", options.model, "animated model file, of any format that assimp reads")->type_name("FILE");
-    input->add_option("--maps", options.maps, "folder of EXR files with UV, depth and object passes, as Blender writes them")
+    input->add_option("--model", options.model, "animated model file, of any format that assimp reads")
+        ->type_name("FILE");
+    input
+        ->add_option("--maps", options.maps,
+                     "folder of EXR files with UV, depth and object passes, as Blender writes them")
         ->type_name("DIR");
     input->require_option(1);
-    app.add_option("--prompt", options.prompt, "what it shall look like, in the words: " + detail::listed(prompt_words, " "))
+    app.add_option("--prompt", options.prompt,
+                   "what it shall look like, in the words: " + detail::listed(prompt_words, " "))
         ->required();
     app.add_option("--out", options.out, "folder for frames, maps, animation, contact sheet and report")
         ->required()
         ->type_name("DIR");
-    app.add_option("--beside", options.beside, "folder of an earlier run, shown beside this one in comparison.png and .webp")
+    app.add_option("--beside", options.beside,
+                   "folder of an earlier run, shown beside this one in comparison.png and .webp")
         ->type_name("DIR");
 
     std::size_t frames = 0;
@@ -89,7 +95,8 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         app.add_option("--frames", frames, "number of frames (24; with --maps: at most this many)")
             ->check(positive)
             ->type_name("N");
-    app.add_option("--size", options.size, "height of the frames in pixels, a multiple of 8; the width follows the input")
+    app.add_option("--size", options.size,
+                   "height of the frames in pixels, a multiple of 8; the width follows the input")
         ->capture_default_str()
         ->check(positive)
         ->type_name("PX");
@@ -98,7 +105,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->capture_default_str()
         ->check(positive)
         ->type_name("N");
-    app.add_option("--seed", options.seed, "of noise, keyframes and random weights")->capture_default_str()->type_name("S");
+    app.add_option("--seed", options.seed, "of noise, keyframes and random weights")
+        ->capture_default_str()
+        ->type_name("S");
     std::string sampler_name = "euler";
     app.add_option("--sampler", sampler_name, "euler, heun or dpmpp_2m")
         ->capture_default_str()
@@ -111,8 +120,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(one_of(names_type{"generative_rendering", "per_frame"}))
         ->type_name("NAME");
     std::string noise;
-    auto* const noise_option = app.add_option("--noise", noise, "initial noise: uv (moves with the surfaces), fixed (sticks to "
-                                                                "the screen) or independent; uv, for per_frame independent")
+    auto* const noise_option = app.add_option("--noise", noise,
+                                              "initial noise: uv (moves with the surfaces), fixed (sticks to "
+                                              "the screen) or independent; uv, for per_frame independent")
                                    ->check(one_of(names_type{"uv", "fixed", "independent"}))
                                    ->type_name("KIND");
     auto* const ours = app.add_option_group("Of the method", "not with --method per_frame");
@@ -133,11 +143,16 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     ours->add_flag("--no-post", no_post, "no post-attention injection (eq. 6)");
     ours->add_flag("--no-adain", no_adain, "no latent normalisation");
 
-    app.add_option("--weights", options.weights, "safetensors file of the reference network; random weights without one")->type_name("FILE");
-    app.add_option("--threads", options.threads, "0: as many as the machine has")->capture_default_str()->type_name("N");
+    app.add_option("--weights", options.weights,
+                   "safetensors file of the reference network; random weights without one")
+        ->type_name("FILE");
+    app.add_option("--threads", options.threads, "0: as many as the machine has")
+        ->capture_default_str()
+        ->type_name("N");
     app.add_flag("--quiet", options.is_quiet, "no progress");
-    app.footer("It writes OUT/frames/0000.png ..., OUT/maps/, OUT/animation.webp, OUT/contact_sheet.png and OUT/report.json.\n"
-               "Exit code: 0 done, 1 failed, 2 bad arguments.");
+    app.footer(
+        "It writes OUT/frames/0000.png ..., OUT/maps/, OUT/animation.webp, OUT/contact_sheet.png and OUT/report.json.\n"
+        "Exit code: 0 done, 1 failed, 2 bad arguments.");
     try {
         app.parse(argc, argv);
         options.is_per_frame = method == "per_frame";
@@ -167,7 +182,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         settings = per_frame(settings);
     }
     if (noise_option->count() > 0) {
-        settings.noise.kind = noise == "uv" ? noise_kind::uv : noise == "fixed" ? noise_kind::fixed : noise_kind::independent;
+        settings.noise.kind = noise == "uv"      ? noise_kind::uv
+                              : noise == "fixed" ? noise_kind::fixed
+                                                 : noise_kind::independent;
     }
     return options;
 }

@@ -54,8 +54,8 @@ inline void write_numbered(std::filesystem::path const& folder, std::vector<rgb8
 /// How many times frames of this height are enlarged so that a person can look at them.
 inline std::size_t viewing_factor(std::size_t height) { return std::max<std::size_t>(1, 256 / height); }
 
-/// Writes a run's pictures below `out`: maps/, frames/, animation.webp and contact_sheet.png, frames before what is made of
-/// them. Throws file_error if one cannot be written; those before it stay.
+/// Writes a run's pictures below `out`: maps/, frames/, animation.webp and contact_sheet.png, frames before what is
+/// made of them. Throws file_error if one cannot be written; those before it stay.
 inline void write_pictures(std::filesystem::path const& out, rendered_guidance const& guidance,
                            std::vector<rgb8_image> const& frames) {
     write_numbered(out / "frames", frames);
@@ -70,10 +70,11 @@ inline void write_pictures(std::filesystem::path const& out, rendered_guidance c
     write_png(out / "contact_sheet.png", contact_sheet(frames, {.enlargement = std::max<std::size_t>(1, factor / 2)}));
 }
 
-/// Writes comparison.png, one row of an earlier run's frames over one of this run's, and comparison.webp, both side by side.
-/// Throws file_error if the earlier frames cannot be read or are not alike.
+/// Writes comparison.png, one row of an earlier run's frames over one of this run's, and comparison.webp, both side by
+/// side. Throws file_error if the earlier frames cannot be read or are not alike.
 inline void write_comparison(std::filesystem::path const& out, std::filesystem::path const& earlier,
-                             std::string const& earlier_name, std::vector<rgb8_image> const& frames, std::string const& name) {
+                             std::string const& earlier_name, std::vector<rgb8_image> const& frames,
+                             std::string const& name) {
     std::vector<rgb8_image> pairs;
     std::vector<rgb8_image> before;
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -85,8 +86,8 @@ inline void write_comparison(std::filesystem::path const& out, std::filesystem::
                              extents_text({frames[i].height, frames[i].width}));
         }
         std::array const both{before.back(), frames[i]};
-        pairs.push_back(contact_sheet(both, {.columns = 2, .enlargement = viewing_factor(frames[i].height),
-                                             .labels = {earlier_name, name}}));
+        pairs.push_back(contact_sheet(
+            both, {.columns = 2, .enlargement = viewing_factor(frames[i].height), .labels = {earlier_name, name}}));
     }
     write_animation(out / "comparison.webp", pairs);
 

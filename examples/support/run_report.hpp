@@ -32,8 +32,8 @@ private:
     clock::time_point start_ = clock::now();
 };
 
-/// Seconds by the clock on the wall: in total, in the denoiser, in the library, and in files, pictures and maps. The run
-/// measured its two parts in seconds of threads, which share the wall's seconds of rendering alike.
+/// Seconds by the clock on the wall: in total, in the denoiser, in the library, and in files, pictures and maps. The
+/// run measured its two parts in seconds of threads, which share the wall's seconds of rendering alike.
 inline nlohmann::ordered_json seconds_of(render_report const& report, double total, double rendering) {
     auto const parts = report.denoiser_seconds() + report.library_seconds();
     auto const library = parts > 0 ? rendering * report.library_seconds() / parts : rendering;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Everything, in the order the data flows; without the reference network (models) and the bridges to engines (adapters).
+// Everything, in the order the data flows; without the reference network (models) and the bridges to engines
+// (adapters).
 #pragma once
 
 #include <genrender/core/error.hpp>

@@ -14,7 +14,8 @@
 using namespace genrender;
 
 TEST_SUITE("baselines/per_frame") {
-    TEST_CASE("[GR sec. 4: Per-Frame] a frame of the baseline equals the frame sampled without any library in between") {
+    TEST_CASE(
+        "[GR sec. 4: Per-Frame] a frame of the baseline equals the frame sampled without any library in between") {
         auto const maps = testing::random_scene(1, 4, {16, 16}, 2);
         testing::analytic_denoiser<double> const phi{.grid = {8, 8}, .attention = 0.5};
         render_settings<double> settings;

@@ -44,20 +44,21 @@ std::vector<frame_index> draw_shuffled(std::uint64_t seed) {
 } // namespace
 
 TEST_SUITE("blending/blend_plan") {
-    TEST_CASE_TEMPLATE("[GR sec. 3.2] a point seen twice is the mean of its first value and its average", Real, float, double) {
+    TEST_CASE_TEMPLATE("[GR sec. 3.2] a point seen twice is the mean of its first value and its average", Real, float,
+                       double) {
         // Frame i shows points i, i + 1, i + 2. Keyframes in the drawn order: 2, then 0.
         testing::shifted_strip const strip{4, 3};
         stack<Real, 3> F_KF({2, 3, 1});
-        F_KF(0, 0, 0) = 2; // point 2, first
-        F_KF(0, 1, 0) = 3; // point 3
-        F_KF(0, 2, 0) = 4; // point 4
+        F_KF(0, 0, 0) = 2;  // point 2, first
+        F_KF(0, 1, 0) = 3;  // point 3
+        F_KF(0, 2, 0) = 4;  // point 4
         F_KF(1, 0, 0) = 10; // point 0
         F_KF(1, 1, 0) = 11; // point 1
         F_KF(1, 2, 0) = 12; // point 2, second
         auto const F_bar = planned<Real>(strip, {{2}, {0}}, {1}, F_KF);
-        CHECK(F_bar(0, 0) == 11);                                  // point 1: seen once, itself
+        CHECK(F_bar(0, 0) == 11);                                        // point 1: seen once, itself
         CHECK(F_bar(1, 0) == doctest::Approx((2 + (2 + 12) / 2.0) / 2)); // point 2: (first + average) / 2
-        CHECK(F_bar(2, 0) == 3);                                   // point 3: seen once, itself
+        CHECK(F_bar(2, 0) == 3);                                         // point 3: seen once, itself
         auto const F_bar_3 = planned<Real>(strip, {{2}, {0}}, {3}, F_KF);
         CHECK(F_bar_3(2, 0) == 1000); // point 5: seen by no keyframe, not touched
         // The order of the keyframes decides who fills first.
@@ -95,7 +96,8 @@ TEST_SUITE("blending/blend_plan") {
         std::size_t collisions = 0;
         for (std::uint64_t seed = 0; seed < 12; ++seed) {
             std::size_t const objects = 1 + seed % 4;
-            std::size_t const T = std::array<std::size_t, 4>{6, 16, 40, 200}[seed % 4]; // collisions at 6, uncovered texels at 200
+            std::size_t const T =
+                std::array<std::size_t, 4>{6, 16, 40, 200}[seed % 4]; // collisions at 6, uncovered texels at 200
             grid_extents const grid{12, 16};
             auto const maps = testing::random_scene(seed, 6, {48, 64}, objects);
             texel_grid const map(to_uv_view(maps), grid, {.T = T});
@@ -105,7 +107,8 @@ TEST_SUITE("blending/blend_plan") {
 
             std::vector<testing::dense_texture<Real>> unprojected;
             for (std::size_t k = 0; k < KF.size(); ++k) {
-                unprojected.push_back(testing::dense_unproject<Real>(maps, KF[k].value, F_KF.view()[k], grid, objects, T));
+                unprojected.push_back(
+                    testing::dense_unproject<Real>(maps, KF[k].value, F_KF.view()[k], grid, objects, T));
             }
             auto const texture = testing::dense_blend(unprojected, share);
             for (std::uint32_t i = 0; i < 6; ++i) {
@@ -147,8 +150,8 @@ TEST_SUITE("blending/blend_plan") {
     TEST_CASE("arguments that do not fit are refused by name") {
         testing::shifted_strip const strip{2, 3};
         std::vector<frame_index> const KF{{0}};
-        CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, KF, {5}), "make_blend_plan: i is 5, expected a frame below 2",
-                             value_error);
+        CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, KF, {5}),
+                             "make_blend_plan: i is 5, expected a frame below 2", value_error);
         CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, {}, {0}),
                              "make_blend_plan: keyframes is empty, expected at least one keyframe", value_error);
         CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, std::vector<frame_index>{{2}}, {0}),

@@ -37,13 +37,15 @@ TEST_SUITE("blending/mix_rows") {
         copy(F_KF_strided, in_view<Real, 3>(F_KF));
         std::vector<std::uint32_t> const offsets{0, 1, 1, 3, 6, 7, 7, 9};
         std::vector<std::uint32_t> const sources{20, 3, 9, 0, 7, 14, 6, 13, 1};
-        std::vector<Real> const weights{1, Real(0.5), Real(0.5), Real(0.2), Real(0.3), Real(0.5), 1, Real(0.1), Real(0.9)};
+        std::vector<Real> const weights{1,         Real(0.5), Real(0.5), Real(0.2), Real(0.3),
+                                        Real(0.5), 1,         Real(0.1), Real(0.9)};
         sparse_rows<Real> const rows{offsets, sources, weights};
         for (auto const alpha : {Real(0.7), Real(1), Real(0)}) {
             auto plain = testing::random_stack<Real, 2>({tokens, channels}, 2);
             auto const before = plain;
             stack<Real, 2> transposed({channels, tokens});
-            strided_view<Real, 2> const strided(transposed.data(), {tokens, channels}, {1, static_cast<std::ptrdiff_t>(tokens)});
+            strided_view<Real, 2> const strided(transposed.data(), {tokens, channels},
+                                                {1, static_cast<std::ptrdiff_t>(tokens)});
             copy(strided, in_view<Real, 2>(plain));
             mix_rows(plain.view(), F_KF, rows, alpha);
             mix_rows(strided, F_KF_strided, rows, alpha);
@@ -53,7 +55,8 @@ TEST_SUITE("blending/mix_rows") {
                     for (auto e = offsets[t]; e < offsets[t + 1]; ++e) {
                         F_bar += weights[e] * F_KF(sources[e] / tokens, sources[e] % tokens, c);
                     }
-                    auto const expected = rows.is_covered(t) ? (1 - alpha) * before(t, c) + alpha * F_bar : before(t, c);
+                    auto const expected =
+                        rows.is_covered(t) ? (1 - alpha) * before(t, c) + alpha * F_bar : before(t, c);
                     CHECK(plain(t, c) == doctest::Approx(expected).epsilon(1e-5));
                     CHECK(strided(t, c) == plain(t, c));
                 }
@@ -75,9 +78,10 @@ TEST_SUITE("blending/mix_rows") {
         stack<float, 2> F({2, 3});
         stack<float, 3> F_KF({1, 2, 4});
         std::vector<std::uint32_t> const offsets{0, 0};
-        CHECK_THROWS_WITH_AS(mix_rows(F.view(), F_KF, {offsets, {}, {}}, 1), "mix_rows: F_KF is [1, 2, 4], expected [1, 2, 3]",
-                             shape_error);
+        CHECK_THROWS_WITH_AS(mix_rows(F.view(), F_KF, {offsets, {}, {}}, 1),
+                             "mix_rows: F_KF is [1, 2, 4], expected [1, 2, 3]", shape_error);
         stack<float, 3> fits({1, 2, 3});
-        CHECK_THROWS_WITH_AS(mix_rows(F.view(), fits, {offsets, {}, {}}, 1), "mix_rows: rows is [1], expected [2]", shape_error);
+        CHECK_THROWS_WITH_AS(mix_rows(F.view(), fits, {offsets, {}, {}}, 1), "mix_rows: rows is [1], expected [2]",
+                             shape_error);
     }
 }

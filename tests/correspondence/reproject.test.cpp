@@ -50,7 +50,8 @@ TEST_SUITE("correspondence/reproject") {
         testing::shifted_strip const strip{2, 3};
         stack<float, 2> F({3, 1});
         stack<float, 2> longer({4, 1});
-        CHECK_THROWS_WITH_AS(reproject(F.view(), F, strip, {0}, {2}), "reproject: j is 2, expected a frame below 2", value_error);
+        CHECK_THROWS_WITH_AS(reproject(F.view(), F, strip, {0}, {2}), "reproject: j is 2, expected a frame below 2",
+                             value_error);
         CHECK_THROWS_WITH_AS(reproject(F.view(), longer, strip, {0}, {1}), "reproject: F_i is [4, 1], expected [3, 1]",
                              shape_error);
         CHECK_THROWS_WITH_AS(reproject(longer.view(), F, strip, {0}, {1}), "reproject: F_j is [4, 1], expected [3, 1]",

@@ -56,7 +56,8 @@ TEST_SUITE("correspondence/texture_projection") {
         stack<float, 2> F({16, 1});
         stack<float, 2> T({1, 1});
         auto const expected = "[" + std::to_string(map.slot_count()) + ", 1]";
-        CHECK_THROWS_WITH_AS(project(F.view(), T, map, {0}), ("project: T is [1, 1], expected " + expected).c_str(), shape_error);
+        CHECK_THROWS_WITH_AS(project(F.view(), T, map, {0}), ("project: T is [1, 1], expected " + expected).c_str(),
+                             shape_error);
         CHECK_THROWS_WITH_AS(unproject(T.view(), F, map, {0}), ("unproject: T is [1, 1], expected " + expected).c_str(),
                              shape_error);
     }

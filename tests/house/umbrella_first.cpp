@@ -4,6 +4,4 @@
 
 bool second_throws_what_first_catches();
 
-int main() {
-    return second_throws_what_first_catches() ? 0 : 1;
-}
+int main() { return second_throws_what_first_catches() ? 0 : 1; }

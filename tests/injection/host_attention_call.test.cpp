@@ -151,8 +151,8 @@ TEST_SUITE("injection/host_attention_call") {
         CHECK_THROWS_WITH_AS(call.attend(f, {{{&f, &f, 0}}}),
                              "host_attention_call::attend: sources is [1], expected [3]", shape_error);
         std::vector<sparse_rows<double>> const rows(2);
-        CHECK_THROWS_WITH_AS(call.mix(f, f, rows, 0.5),
-                             "host_attention_call::mix: rows is [2], expected [3]", shape_error);
+        CHECK_THROWS_WITH_AS(call.mix(f, f, rows, 0.5), "host_attention_call::mix: rows is [2], expected [3]",
+                             shape_error);
         CHECK_THROWS_WITH_AS(call.attend(f, {{{&f, &f, 0}}, {}, {{&f, &f, 0}}}),
                              "scaled_dot_product: blocks is empty, expected at least one key", value_error);
     }

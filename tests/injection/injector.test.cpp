@@ -247,8 +247,8 @@ TEST_SUITE("injection/injector") {
         injector<host_features<double>, double> const inject(
             bank, KF, [&](site_index site, frame_index frame) { return world.plan(site, frame).rows(); }, {});
         auto call = world.call(taken);
-        CHECK_THROWS_WITH_AS(inject(call),
-                             "injector: K_KF is missing, expected keyframes recorded by callbacks", value_error);
+        CHECK_THROWS_WITH_AS(inject(call), "injector: K_KF is missing, expected keyframes recorded by callbacks",
+                             value_error);
         CHECK(inject.joined_features(taken)->view().data() == world.f_KF.view().data());
         CHECK(inject.blended_features(taken)->view().data() == world.F_KF.view().data());
     }

@@ -61,8 +61,8 @@ TEST_SUITE("pipeline/render") {
         initial_noise(to_view(z_T), to_uv_view(scene()), frames, settings.noise);
         z_T *= settings.sigma_max;
         auto const shrink = phi.spread / std::sqrt(phi.spread * phi.spread + settings.sigma_max * settings.sigma_max);
-        for (auto const& [method, bound] : {std::pair(sampler::euler, 0.05), std::pair(sampler::heun, 0.005),
-                                            std::pair(sampler::dpmpp_2m, 0.005)}) {
+        for (auto const& [method, bound] :
+             {std::pair(sampler::euler, 0.05), std::pair(sampler::heun, 0.005), std::pair(sampler::dpmpp_2m, 0.005)}) {
             settings.method = method;
             render_report report;
             auto const z = render(phi, to_uv_view(scene()), settings, report);
@@ -98,8 +98,9 @@ TEST_SUITE("pipeline/render") {
         };
         auto const no_post = changed([](auto& s) { s.post_attention = false; });
         CHECK(difference(full, no_post) > 1e-4);
-        CHECK(difference(no_post, changed([](auto& s) { s.alpha = [](std::size_t, attention_site const&) { return 0.0; }; })) ==
-              0);
+        CHECK(difference(no_post, changed([](auto& s) {
+                             s.alpha = [](std::size_t, attention_site const&) { return 0.0; };
+                         })) == 0);
         auto const no_pre = changed([](auto& s) { s.pre_attention = false; });
         CHECK(difference(full, no_pre) > 1e-4);
         auto const neither = changed([](auto& s) { s.pre_attention = s.post_attention = false; });
@@ -115,7 +116,8 @@ TEST_SUITE("pipeline/render") {
         CHECK(difference(full, changed([](auto& s) { s.noise.T = 2; })) > 1e-3);
         CHECK(difference(full, changed([](auto& s) { s.keyframes.drawing = keyframe_drawing::stratified; })) > 1e-9);
     }
-    TEST_CASE("UV noise alone makes corresponding pixels of the analytic denoiser agree better than independent noise") {
+    TEST_CASE(
+        "UV noise alone makes corresponding pixels of the analytic denoiser agree better than independent noise") {
         auto const maps = testing::random_scene(40, 12, {64, 64}, 3);
         testing::analytic_denoiser<double> const phi{.grid = {16, 16}};
         texel_grid const pixels(to_uv_view(maps), {16, 16});
@@ -159,8 +161,9 @@ TEST_SUITE("pipeline/render") {
         auto const phi = with_attention();
         render_report report;
         std::size_t calls = 0;
-        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(scene()), few_steps(), report,
-                                    [&](progress const&) { return ++calls < 9; }, threaded_loop(2)),
+        CHECK_THROWS_WITH_AS(render(
+                                 phi, to_uv_view(scene()), few_steps(), report,
+                                 [&](progress const&) { return ++calls < 9; }, threaded_loop(2)),
                              "render: cancelled by its observer in step 2 of 4", cancelled);
     }
     TEST_CASE("geometry that fills the frame skips latent normalisation and says so") {
@@ -199,7 +202,8 @@ TEST_SUITE("pipeline/render") {
         refuses([](auto& s) { s.keyframes.count = 0; },
                 "draw_keyframes: count is 0, expected 1 to the animation's 6 frames");
         refuses([](auto& s) { s.steps = 0; }, "render: settings.steps is 0, expected at least one step");
-        refuses([](auto& s) { s.frames_per_call = 0; }, "render: settings.frames_per_call is 0, expected at least one frame");
+        refuses([](auto& s) { s.frames_per_call = 0; },
+                "render: settings.frames_per_call is 0, expected at least one frame");
         refuses([](auto& s) { s.window_begin = 2; },
                 "render: settings.window_begin is 2.000000, expected 0 <= window_begin <= window_end <= 1");
         uv_maps const none(0, {32, 32});
@@ -207,6 +211,7 @@ TEST_SUITE("pipeline/render") {
                              "render: UV.frame_count() is 0, expected at least one frame", value_error);
         uv_maps const odd(3, {30, 32});
         CHECK_THROWS_WITH_AS(render(phi, to_uv_view(odd), few_steps(), report),
-                             "initial_noise: grid is [8, 8], expected extents that divide the maps' [30, 32]", value_error);
+                             "initial_noise: grid is [8, 8], expected extents that divide the maps' [30, 32]",
+                             value_error);
     }
 }

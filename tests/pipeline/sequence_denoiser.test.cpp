@@ -44,14 +44,15 @@ struct small_run {
     latents<Real> noise() const {
         auto z = latents<Real>::from_shape({6, 3, 8, 8});
         for (std::size_t e = 0; e < z.size(); ++e) {
-            z.data()[e] = static_cast<Real>(normal_value(5, random_stream::test, {static_cast<std::uint32_t>(e), 0, 0}));
+            z.data()[e] =
+                static_cast<Real>(normal_value(5, random_stream::test, {static_cast<std::uint32_t>(e), 0, 0}));
         }
         return z;
     }
 
     latents<Real> estimate(latents<Real> const& z, Real sigma) {
-        return sequence_denoiser(phi, grids, to_view(std::as_const(background)), std::span<Real const>(sigmas), settings, loop, meter,
-                                 report)(z, sigma);
+        return sequence_denoiser(phi, grids, to_view(std::as_const(background)), std::span<Real const>(sigmas),
+                                 settings, loop, meter, report)(z, sigma);
     }
 };
 
@@ -73,8 +74,8 @@ TEST_SUITE("pipeline/sequence_denoiser") {
         for (std::size_t step = 0; step < 3; ++step) {
             auto const sigma = run.sigmas[step];
             auto const KF = draw_keyframes(run.settings.keyframes, 6, step);
-            auto const expected = testing::plain_algorithm<Real>(run.phi, run.maps, run.objects, run.T, to_view(z), sigma, KF,
-                                                                 Real(0.7));
+            auto const expected =
+                testing::plain_algorithm<Real>(run.phi, run.maps, run.objects, run.T, to_view(z), sigma, KF, Real(0.7));
             auto const x0 = run.estimate(z, sigma);
             auto const worst = greatest_difference(x0, expected.data());
             MESSAGE("step ", step, ": greatest difference ", worst);
@@ -92,7 +93,8 @@ TEST_SUITE("pipeline/sequence_denoiser") {
             return 0.2;
         };
         auto const KF = draw_keyframes(run.settings.keyframes, 6, 1);
-        auto const expected = testing::plain_algorithm<double>(run.phi, run.maps, run.objects, run.T, to_view(z), 3, KF, 0.2);
+        auto const expected =
+            testing::plain_algorithm<double>(run.phi, run.maps, run.objects, run.T, to_view(z), 3, KF, 0.2);
         CHECK(greatest_difference(run.estimate(z, 3), expected.data()) <= 1e-12);
         // Without layers every frame is left to itself, as outside the window.
         run.settings.layers = [](attention_site const&, std::uint32_t) { return false; };
@@ -142,8 +144,9 @@ TEST_SUITE("pipeline/sequence_denoiser") {
         auto z = run.noise();
         z(4, 1, 2, 3) = std::nan("");
         run.settings.layers = [](attention_site const&, std::uint32_t) { return false; };
-        CHECK_THROWS_WITH_AS(run.estimate(z, 3),
-                             "sequence_denoiser: the denoiser's estimate of frame 4 in step 1 is nan, expected finite latents",
-                             value_error);
+        CHECK_THROWS_WITH_AS(
+            run.estimate(z, 3),
+            "sequence_denoiser: the denoiser's estimate of frame 4 in step 1 is nan, expected finite latents",
+            value_error);
     }
 }

@@ -65,7 +65,8 @@ TEST_SUITE("sampling/denoiser") {
         }
     }
     TEST_CASE_TEMPLATE("the analytic denoiser gives the posterior mean of its prior", Real, float, double) {
-        testing::analytic_denoiser<Real> const phi{.grid = {1, 1}, .channels = 1, .mean = Real(0.5), .spread = Real(0.25)};
+        testing::analytic_denoiser<Real> const phi{
+            .grid = {1, 1}, .channels = 1, .mean = Real(0.5), .spread = Real(0.25)};
         stack<Real, 4> z({1, 1, 1, 1});
         z(0, 0, 0, 0) = Real(1.5);
         stack<Real, 4> x0({1, 1, 1, 1});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A denoiser whose exact answer is known: clean latents are N(mean, spread^2) in every pixel, and attention is a share of it.
+// A denoiser whose exact answer is known: clean latents are N(mean, spread^2) in every pixel, and attention is a share
+// of it.
 #pragma once
 
 #include <genrender/injection/host_attention_call.hpp>
@@ -31,9 +32,10 @@ struct identity_projections {
     std::size_t heads() const { return 1; }
 };
 
-/// D(z, sigma) = (1 - attention) E[clean | z] + attention F, where E is the posterior mean for clean ~ N(mean, spread^2) and F
-/// the output of one decoder site whose input is the posterior mean, a token a pixel. With attention = 0 the sampler's limit
-/// is known: z_0 = mean + (z_T - mean) spread / sqrt(spread^2 + sigma_T^2).
+/// D(z, sigma) = (1 - attention) E[clean given z] + attention F, where E is the posterior mean for clean ~ N(mean,
+/// spread^2) and F
+/// the output of one decoder site whose input is the posterior mean, a token a pixel. With attention = 0 the sampler's
+/// limit is known: z_0 = mean + (z_T - mean) spread / sqrt(spread^2 + sigma_T^2).
 template <class Real>
 struct analytic_denoiser {
     using real_type = Real;
@@ -56,8 +58,8 @@ struct analytic_denoiser {
     std::size_t branches() const { return guidance_branches; }
 
     template <class Processor>
-    void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma, std::span<frame_index const> frames,
-                    Processor& processor) const {
+    void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
+                    std::span<frame_index const> frames, Processor& processor) const {
         auto const tokens = grid.size();
         auto posterior = features_type::allocate({frames.size(), tokens, channels});
         auto const gain = spread * spread / (spread * spread + sigma * sigma);
@@ -84,7 +86,8 @@ struct analytic_denoiser {
             auto const t = row * grid.width + column;
             Real mixed = 0;
             for (std::size_t branch = 0; branch < guidance_branches; ++branch) {
-                mixed += (branch == 0 ? Real{1} : Real{-1}) * F[branch].view()(i, t, c) / static_cast<Real>(guidance_branches);
+                mixed += (branch == 0 ? Real{1} : Real{-1}) * F[branch].view()(i, t, c) /
+                         static_cast<Real>(guidance_branches);
             }
             x0(i, c, row, column) = (1 - attention) * posterior.view()(i, t, c) + attention * mixed;
         });

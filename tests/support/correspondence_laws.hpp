@@ -11,8 +11,8 @@
 
 namespace genrender::testing {
 
-/// Checks the laws of correspondence_map on every frame and token of `map`; returns how many tokens showed a point, so that a
-/// caller can see that something was checked.
+/// Checks the laws of correspondence_map on every frame and token of `map`; returns how many tokens showed a point, so
+/// that a caller can see that something was checked.
 template <correspondence_map Map>
 std::size_t check_correspondence_laws(Map const& map) {
     std::size_t shown = 0;

@@ -53,7 +53,8 @@ dense_texture<Real> dense_unproject(uv_maps const& maps, std::size_t frame, stri
             auto const t = texture.texel(maps.object(frame, row, column), u, v);
             auto const centre_u = (static_cast<double>(t % T) + 0.5) / static_cast<double>(T);
             auto const centre_v = (static_cast<double>(t / T % T) + 0.5) / static_cast<double>(T);
-            auto const away = std::pow(static_cast<double>(u) - centre_u, 2) + std::pow(static_cast<double>(v) - centre_v, 2);
+            auto const away =
+                std::pow(static_cast<double>(u) - centre_u, 2) + std::pow(static_cast<double>(v) - centre_v, 2);
             // Ties are decided by the lowest pixel; rounding must not decide them otherwise.
             if (away < distance[t] * (1 - 1e-9)) {
                 distance[t] = away;
@@ -68,7 +69,8 @@ dense_texture<Real> dense_unproject(uv_maps const& maps, std::size_t frame, stri
     return texture;
 }
 
-/// The unified texture: the mean of the average over the frames that see a texel, and of the texture inpainted in their order.
+/// The unified texture: the mean of the average over the frames that see a texel, and of the texture inpainted in their
+/// order.
 template <class Real>
 dense_texture<Real> dense_blend(std::vector<dense_texture<Real>> const& frames, Real first_fill_share = Real(0.5)) {
     auto unified = frames.front();
@@ -87,15 +89,16 @@ dense_texture<Real> dense_blend(std::vector<dense_texture<Real>> const& frames, 
             }
             unified.filled[t] = seen > 0 ? 1 : 0;
             unified.values[t * unified.channels + c] =
-                seen > 0 ? first_fill_share * inpainted + (1 - first_fill_share) * sum / static_cast<Real>(seen) : Real{0};
+                seen > 0 ? first_fill_share * inpainted + (1 - first_fill_share) * sum / static_cast<Real>(seen)
+                         : Real{0};
         }
     }
     return unified;
 }
 
 /// The texel that a token reads: of the object with most pixels in its cell, the pixel nearest to the cell's centre.
-inline std::optional<std::size_t> dense_texel_of(uv_maps const& maps, std::size_t frame, grid_extents grid, std::size_t token,
-                                                 std::size_t objects, std::size_t T) {
+inline std::optional<std::size_t> dense_texel_of(uv_maps const& maps, std::size_t frame, grid_extents grid,
+                                                 std::size_t token, std::size_t objects, std::size_t T) {
     auto const height = maps.grid().height / grid.height;
     auto const width = maps.grid().width / grid.width;
     auto const top = token / grid.width * height;
@@ -125,8 +128,8 @@ inline std::optional<std::size_t> dense_texel_of(uv_maps const& maps, std::size_
         if (maps.coverage(frame, row, column) != 0 && maps.object(frame, row, column) == owner &&
             down * down + right * right < nearest) {
             nearest = down * down + right * right;
-            best = dense_texture<float>(objects, T, 1).texel(owner, maps.uv(frame, row, column, 0),
-                                                             maps.uv(frame, row, column, 1));
+            best = dense_texture<float>(objects, T, 1)
+                       .texel(owner, maps.uv(frame, row, column, 0), maps.uv(frame, row, column, 1));
         }
     }
     return best;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// [GR alg. 1] One evaluation of the algorithm's body written down plainly, with dense textures and dense attention, for the
-// analytic denoiser: what the sequence denoiser must equal.
+// [GR alg. 1] One evaluation of the algorithm's body written down plainly, with dense textures and dense attention, for
+// the analytic denoiser: what the sequence denoiser must equal.
 #pragma once
 
 #include "analytic_denoiser.hpp"
@@ -42,11 +42,12 @@ std::vector<std::vector<Real>> dense_attention(std::vector<std::vector<Real>> co
     return F;
 }
 
-/// x0 [frames, channels, height, width] of one evaluation at z and sigma with the keyframes KF: alpha and the texture's T are
-/// constant, the mean of first fill and average is taken, latents are not normalised.
+/// x0 [frames, channels, height, width] of one evaluation at z and sigma with the keyframes KF: alpha and the texture's
+/// T are constant, the mean of first fill and average is taken, latents are not normalised.
 template <class Real>
-stack<Real, 4> plain_algorithm(analytic_denoiser<Real> const& phi, uv_maps const& maps, std::size_t objects, std::size_t T,
-                               strided_view<Real const, 4> z, Real sigma, std::vector<frame_index> const& KF, Real alpha) {
+stack<Real, 4> plain_algorithm(analytic_denoiser<Real> const& phi, uv_maps const& maps, std::size_t objects,
+                               std::size_t T, strided_view<Real const, 4> z, Real sigma,
+                               std::vector<frame_index> const& KF, Real alpha) {
     using tokens_type = std::vector<std::vector<Real>>;
     auto const grid = phi.grid;
     auto const gain = phi.spread * phi.spread / (phi.spread * phi.spread + sigma * sigma);

@@ -10,8 +10,8 @@
 
 namespace genrender::testing {
 
-/// `objects` textured rectangles of random size, place and motion; later ones hide earlier ones. About a third of the pixels
-/// stay background. The texture of a rectangle covers [0, 1]^2 and moves with it, with a little zoom.
+/// `objects` textured rectangles of random size, place and motion; later ones hide earlier ones. About a third of the
+/// pixels stay background. The texture of a rectangle covers [0, 1]^2 and moves with it, with a little zoom.
 inline uv_maps random_scene(std::uint64_t seed, std::size_t frames, grid_extents grid, std::size_t objects) {
     uv_maps maps(frames, grid);
     auto const random = [&](std::uint32_t object, std::uint32_t what) {
@@ -27,7 +27,8 @@ inline uv_maps random_scene(std::uint64_t seed, std::size_t frames, grid_extents
             auto const top = random(object, 4) * 0.8 - 0.1 + time * 0.07 * (random(object, 6) - 0.5);
             for (std::size_t row = 0; row < grid.height; ++row) {
                 for (std::size_t column = 0; column < grid.width; ++column) {
-                    auto const u = ((static_cast<double>(column) + 0.5) / static_cast<double>(grid.width) - left) / width;
+                    auto const u =
+                        ((static_cast<double>(column) + 0.5) / static_cast<double>(grid.width) - left) / width;
                     auto const v = ((static_cast<double>(row) + 0.5) / static_cast<double>(grid.height) - top) / height;
                     if (u >= 0 && u < 1 && v >= 0 && v < 1) {
                         maps.uv(i, row, column, 0) = static_cast<float>(u);

@@ -21,47 +21,49 @@ struct key_value_block {
     std::size_t frame = 0;
 };
 
-/// What every frame of a stack attends to: one list of blocks a frame, read in order, as if their tokens stood in a row.
+/// What every frame of a stack attends to: one list of blocks a frame, read in order, as if their tokens stood in a
+/// row.
 template <class Features>
 using attention_sources = std::vector<std::vector<key_value_block<Features>>>;
 
-/// One run of one self-attention module, with the engine's own operations on the engine's own tensors: a processor never
-/// touches an element, so the features may lie on a device. `Features` is a cheap handle of a stack
+/// One run of one self-attention module, with the engine's own operations on the engine's own tensors: a processor
+/// never touches an element, so the features may lie on a device. `Features` is a cheap handle of a stack
 /// [frames, tokens, channels], as tensors of most engines are.
 ///
-/// expression                          | type              | meaning
-/// ------------------------------------|-------------------|--------------------------------------------------------------
-/// `typename Call::features_type`      | copyable          | handle of features [frames, tokens, channels]
-/// `typename Call::real_type`          | float or double   | type of the weights of `mix`
-/// `call.place()`                      | attention_place   | which site, which guidance branch
-/// `call.frames()`                     | span of frame_index | which frame of the animation each entry of the frame axis is
-/// `call.f()`                          | features_type     | f: the input of the module, after its LayerNorm
-/// `call.query(f)` `key(f)` `value(f)` | features_type     | [GR eq. 2] W^Q f, W^K f, W^V f, for any stack f
-/// `call.attend(Q, sources)`           | features_type     | [GR eq. 1] F, frame i of Q attending to `sources[i]`
-/// `call.mix(F_hat, F_KF, rows, alpha)`| features_type     | [GR eq. 6] rows covered by `rows[i]` become alpha F_bar +
-///                                     |                   | (1 - alpha) F_hat with F_bar = rows[i] * F_KF (F_KF read as
-///                                     |                   | [keyframes * tokens, channels]); all others stay F_hat
+/// expression                           | type            | meaning
+/// -------------------------------------|-----------------|------------------------------------------------------------
+/// `typename Call::features_type`       | copyable        | handle of features [frames, tokens, channels]
+/// `typename Call::real_type`           | float or double | type of the weights of `mix`
+/// `call.place()`                       | attention_place | which site, which guidance branch
+/// `call.frames()`                      | frame indices   | which frame of the animation each entry of the frame axis
+///                                      |                 | is; a span
+/// `call.f()`                           | features_type   | f: the input of the module, after its LayerNorm
+/// `call.query(f)` `key(f)` `value(f)`  | features_type   | W^Q f, W^K f, W^V f [GR eq. 2], for any stack f
+/// `call.attend(Q, sources)`            | features_type   | F [GR eq. 1], frame i of Q attending to `sources[i]`
+/// `call.mix(F_hat, F_KF, rows, alpha)` | features_type   | eq. 6: rows covered by `rows[i]` become alpha F_bar + (1 -
+///                                      |                 | alpha) F_hat with F_bar = rows[i] * F_KF (F_KF read as
+///                                      |                 | [keyframes * tokens, channels]); all others stay F_hat
 ///
-/// These the compiler cannot check, and a model owes them: results stay valid after the call for as long as a handle lives;
-/// `attend` depends on the order of blocks by rounding alone; `mix` with alpha = 0 or without covered rows returns F_hat.
-/// It does not require that F is taken before or after the output projection: blending commutes with it (weights of a row
-/// sum to 1). It must be taken before the residual is added.
+/// These the compiler cannot check, and a model owes them: results stay valid after the call for as long as a handle
+/// lives; `attend` depends on the order of blocks by rounding alone; `mix` with alpha = 0 or without covered rows
+/// returns F_hat. It does not require that F is taken before or after the output projection: blending commutes with it
+/// (weights of a row sum to 1). It must be taken before the residual is added.
 ///
 /// See also: attention_processor, which consumes it; host_attention_call, the model for features in host memory.
 template <class Call>
-concept attention_call =
-    std::copyable<typename Call::features_type> && std::floating_point<typename Call::real_type> &&
-    requires(Call& call, typename Call::features_type const& x, attention_sources<typename Call::features_type> const& sources,
+concept attention_call = std::copyable<typename Call::features_type> && std::floating_point<typename Call::real_type> &&
+    requires(Call& call, typename Call::features_type const& x,
+             attention_sources<typename Call::features_type> const& sources,
              std::span<sparse_rows<typename Call::real_type> const> rows, typename Call::real_type alpha) {
-        { call.place() } -> std::same_as<attention_place>;
-        { call.frames() } -> std::convertible_to<std::span<frame_index const>>;
-        { call.f() } -> std::convertible_to<typename Call::features_type>;
-        { call.query(x) } -> std::convertible_to<typename Call::features_type>;
-        { call.key(x) } -> std::convertible_to<typename Call::features_type>;
-        { call.value(x) } -> std::convertible_to<typename Call::features_type>;
-        { call.attend(x, sources) } -> std::convertible_to<typename Call::features_type>;
-        { call.mix(x, x, rows, alpha) } -> std::convertible_to<typename Call::features_type>;
-    };
+    { call.place() } -> std::same_as<attention_place>;
+    { call.frames() } -> std::convertible_to<std::span<frame_index const>>;
+    { call.f() } -> std::convertible_to<typename Call::features_type>;
+    { call.query(x) } -> std::convertible_to<typename Call::features_type>;
+    { call.key(x) } -> std::convertible_to<typename Call::features_type>;
+    { call.value(x) } -> std::convertible_to<typename Call::features_type>;
+    { call.attend(x, sources) } -> std::convertible_to<typename Call::features_type>;
+    { call.mix(x, x, rows, alpha) } -> std::convertible_to<typename Call::features_type>;
+};
 
 /// The least that an attention_call is, for checking processors; never run.
 template <class Features, class Real>

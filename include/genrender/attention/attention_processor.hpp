@@ -10,13 +10,13 @@ namespace genrender {
 
 /// Runs in place of a self-attention module and returns its output.
 ///
-/// expression        | type                       | meaning
-/// ------------------|----------------------------|---------------------------------------------------------------------
-/// `processor(call)` | `Call::features_type`      | F [frames, tokens, channels], the output of the module for all frames
-///                   |                            | of the call, before the residual is added
+/// expression        | type                  | meaning
+/// ------------------|-----------------------|-------------------------------------------------------------------------
+/// `processor(call)` | `Call::features_type` | F [frames, tokens, channels], the output of the module for all frames of
+///                   |                       | the call, before the residual is added
 ///
-/// These the compiler cannot check, and a model owes them: F has the extents of `call.f()`; calls at different places, or for
-/// different frames, may run at the same time on several threads; the processor keeps no reference to the call.
+/// These the compiler cannot check, and a model owes them: F has the extents of `call.f()`; calls at different places,
+/// or for different frames, may run at the same time on several threads; the processor keeps no reference to the call.
 /// An engine owes the processor that it does not write into F, which a recorder keeps: the residual is added elsewhere.
 /// It does not require to be copied, to know a network, or to be called in any order of sites.
 ///

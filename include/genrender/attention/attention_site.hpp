@@ -22,10 +22,10 @@ enum class network_part : std::uint8_t { encoder, middle, decoder };
 
 /// One self-attention module of a denoiser, described once for all calls.
 struct attention_site {
-    std::string name;     ///< as the engine calls it, say `up_blocks.1.attentions.0.transformer_blocks.0.attn1`
+    std::string name; ///< as the engine calls it, say `up_blocks.1.attentions.0.transformer_blocks.0.attn1`
     network_kind network = network_kind::denoiser;
     network_part part = network_part::decoder;
-    grid_extents grid;    ///< of its feature map; tokens are row * width + column
+    grid_extents grid; ///< of its feature map; tokens are row * width + column
     std::size_t channels = 0;
 };
 
@@ -35,8 +35,8 @@ struct site_index {
     friend constexpr auto operator<=>(site_index, site_index) = default;
 };
 
-/// One run of a site: features of different guidance branches (the unconditional and the conditional one of classifier-free
-/// guidance) never meet.
+/// One run of a site: features of different guidance branches (the unconditional and the conditional one of
+/// classifier-free guidance) never meet.
 struct attention_place {
     site_index site;
     std::uint32_t branch = 0;

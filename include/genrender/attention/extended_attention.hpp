@@ -8,9 +8,9 @@
 
 namespace genrender {
 
-/// The sources of extended attention over `frames` frames: frame i attends to frames 0, 1, ... of K and V in their order,
-/// which stands for K = W^K [f^1, ..., f^N] and V = W^V [f^1, ..., f^N] without joining them in memory. The result points to
-/// K and V.
+/// The sources of extended attention over `frames` frames: frame i attends to frames 0, 1, ... of K and V in their
+/// order, which stands for K = W^K [f^1, ..., f^N] and V = W^V [f^1, ..., f^N] without joining them in memory. The
+/// result points to K and V.
 template <class Features>
 attention_sources<Features> extended_attention_sources(Features const& K, Features const& V, std::size_t frames) {
     std::vector<key_value_block<Features>> all(frames);

@@ -24,7 +24,8 @@ public:
     explicit host_features(strided_view<Real, 3> view) : view_(view) {}
 
     /// Shares memory that `owner` keeps alive.
-    host_features(strided_view<Real, 3> view, std::shared_ptr<void const> owner) : view_(view), owner_(std::move(owner)) {}
+    host_features(strided_view<Real, 3> view, std::shared_ptr<void const> owner)
+        : view_(view), owner_(std::move(owner)) {}
 
     /// Owns new zeros.
     static host_features allocate(std::array<std::size_t, 3> const& extents) {

@@ -52,8 +52,8 @@ struct attention_tile {
     Eigen::Array<Real, Eigen::Dynamic, 1> sum{Eigen::Index{queries}};
 };
 
-/// Adds one run of keys to a tile of the online softmax (Milakov and Gimelshein 2018): everything summed so far is rescaled
-/// whenever a larger logit appears, so the matrix of all logits is never in memory.
+/// Adds one run of keys to a tile of the online softmax (Milakov and Gimelshein 2018): everything summed so far is
+/// rescaled whenever a larger logit appears, so the matrix of all logits is never in memory.
 template <class Real, class Output>
 void attend_to_run(Output F, matrix_map<Real const> Q, matrix_map<Real const> K, matrix_map<Real const> V, Real scale,
                    attention_tile<Real>& tile) {
@@ -74,10 +74,10 @@ void attend_to_run(Output F, matrix_map<Real const> Q, matrix_map<Real const> K,
 
 } // namespace detail
 
-/// Writes F [tokens, channels]: multi-head attention of Q [tokens, channels] over the tokens of all `blocks` together, in
-/// which head h owns channels [h d, (h + 1) d), d = channels / heads. Exact softmax, safe against overflow; blocks are
-/// read where they lie. F shares no memory with Q, K or V. Throws shape_error if F, K or V do not fit Q, value_error if
-/// heads do not divide the channels or no block holds a token.
+/// Writes F [tokens, channels]: multi-head attention of Q [tokens, channels] over the tokens of all `blocks` together,
+/// in which head h owns channels [h d, (h + 1) d), d = channels / heads. Exact softmax, safe against overflow; blocks
+/// are read where they lie. F shares no memory with Q, K or V. Throws shape_error if F, K or V do not fit Q,
+/// value_error if heads do not divide the channels or no block holds a token.
 template <class Real>
 void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
                         std::type_identity_t<std::span<key_value_view<Real> const>> blocks, std::size_t heads) {
@@ -129,8 +129,8 @@ void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
                 for (std::size_t k = 0; k < block.K.extent(0); k += tile_type::keys) {
                     auto const k_count = std::min(tile_type::keys, block.K.extent(0) - k);
                     detail::attend_to_run<Real>(F_tile, to_matrix(Q_head.slice(q, q_count)),
-                                                to_matrix(K_head.slice(k, k_count)), to_matrix(V_head.slice(k, k_count)),
-                                                scale, tile);
+                                                to_matrix(K_head.slice(k, k_count)),
+                                                to_matrix(V_head.slice(k, k_count)), scale, tile);
                 }
             }
             F_tile.array().colwise() /= tile.sum.head(static_cast<Eigen::Index>(q_count));

@@ -8,8 +8,8 @@
 
 namespace genrender {
 
-/// The settings of a run turned into the Per-Frame baseline: no keyframes, no injection, no latent normalisation, and noise of
-/// `noise` kind; steps, schedule, sampler and seeds stay.
+/// The settings of a run turned into the Per-Frame baseline: no keyframes, no injection, no latent normalisation, and
+/// noise of `noise` kind; steps, schedule, sampler and seeds stay.
 template <class Real>
 render_settings<Real> per_frame(render_settings<Real> settings, noise_kind noise = noise_kind::independent) {
     settings.window_begin = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.2, alg. 1: blend(pi_UV^-1(F_KF))] The unified texture seen by one frame, as a sparse map of keyframe tokens.
+// [GR sec. 3.2, alg. 1: blend(pi_UV^-1(F_KF))] The unified texture seen by one frame, as a sparse map of keyframe
+// tokens.
 #pragma once
 
 #include <genrender/blending/texel_weights.hpp>
@@ -16,9 +17,9 @@
 
 namespace genrender {
 
-/// For every token of one frame, the keyframe tokens that its blended feature F_bar sums, with weights that sum to 1. Blending
-/// is linear and knows geometry alone, so one plan serves every layer of its resolution, every channel and both guidance
-/// branches; the texture itself is never in memory.
+/// For every token of one frame, the keyframe tokens that its blended feature F_bar sums, with weights that sum to 1.
+/// Blending is linear and knows geometry alone, so one plan serves every layer of its resolution, every channel and
+/// both guidance branches; the texture itself is never in memory.
 template <class Real>
 struct blend_plan {
     std::vector<std::uint32_t> offsets{0}; ///< tokens + 1 of them
@@ -38,8 +39,9 @@ struct blend_plan {
 };
 
 /// Compiles the plan that gives frame i its F_bar = pi_i(T_bar), T_bar = unified texture of `keyframes` in their order:
-/// a token whose surface point is seen by several keyframes mixes them by unified_weight, a token that no keyframe covers has
-/// no entry. Throws value_error if a frame does not exist, no keyframe is given or the share is outside [0, 1].
+/// a token whose surface point is seen by several keyframes mixes them by unified_weight, a token that no keyframe
+/// covers has no entry. Throws value_error if a frame does not exist, no keyframe is given or the share is outside [0,
+/// 1].
 template <class Real, correspondence_map Map>
 blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> keyframes, frame_index i,
                                  std::type_identity_t<Real> first_fill_share = Real(0.5)) {
@@ -48,8 +50,8 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
     for (auto const keyframe : keyframes) {
         require_frame("make_blend_plan", "keyframes", map, keyframe);
     }
-    require_value(first_fill_share >= 0 && first_fill_share <= 1, "make_blend_plan", "first_fill_share", first_fill_share,
-                  "a share in [0, 1]");
+    require_value(first_fill_share >= 0 && first_fill_share <= 1, "make_blend_plan", "first_fill_share",
+                  first_fill_share, "a share in [0, 1]");
 
     auto const tokens = map.grid().size();
     blend_plan<Real> plan;

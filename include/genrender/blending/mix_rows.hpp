@@ -11,10 +11,10 @@
 
 namespace genrender {
 
-/// Where rows cover token t: F[t] = (1 - alpha) F[t] + alpha * sum of weights[e] * F_KF[sources[e]]; elsewhere F[t] stays.
-/// F [tokens, channels]; F_KF [keyframes, tokens, channels], whose row k * tokens + t is source k * tokens + t. Any strides;
-/// rows of neighbouring channels are fastest. With alpha = 1 the former F is not read. Throws shape_error if the channels or
-/// the rows do not fit.
+/// Where rows cover token t: F[t] = (1 - alpha) F[t] + alpha * sum of weights[e] * F_KF[sources[e]]; elsewhere F[t]
+/// stays. F [tokens, channels]; F_KF [keyframes, tokens, channels], whose row k * tokens + t is source k * tokens + t.
+/// Any strides; rows of neighbouring channels are fastest. With alpha = 1 the former F is not read. Throws shape_error
+/// if the channels or the rows do not fit.
 template <class Real>
 void mix_rows(strided_view<Real, 2> F, in_view<Real, 3> F_KF, sparse_rows<std::type_identity_t<Real>> const& rows,
               std::type_identity_t<Real> alpha) {
@@ -40,7 +40,8 @@ void mix_rows(strided_view<Real, 2> F, in_view<Real, 3> F_KF, sparse_rows<std::t
             auto const weight = alpha * rows.weights[e];
             if (own == 0) {
                 for (std::size_t c = 0; c < channels; ++c) {
-                    out[static_cast<std::ptrdiff_t>(c) * step] = weight * in[static_cast<std::ptrdiff_t>(c) * source_step];
+                    out[static_cast<std::ptrdiff_t>(c) * step] =
+                        weight * in[static_cast<std::ptrdiff_t>(c) * source_step];
                 }
             } else if (step == 1 && source_step == 1) {
                 for (std::size_t c = 0; c < channels; ++c) {

@@ -6,23 +6,23 @@
 
 namespace genrender {
 
-/// Share of each of `seen` > 0 keyframes that see a texel in the average texture: 1 / seen. Keyframes that do not see it take
-/// no part in the division.
+/// Share of each of `seen` > 0 keyframes that see a texel in the average texture: 1 / seen. Keyframes that do not see
+/// it take no part in the division.
 template <class Real>
 constexpr Real average_weight(std::size_t seen) {
     return 1 / static_cast<Real>(seen);
 }
 
 /// Share in the inpainted texture, which is filled in the drawn order and only where it has not been filled before:
-/// all for the first keyframe that sees the texel (position 0 among those that do), nothing for the others. Being filled is
-/// known from geometry, never read off a value.
+/// all for the first keyframe that sees the texel (position 0 among those that do), nothing for the others. Being
+/// filled is known from geometry, never read off a value.
 template <class Real>
 constexpr Real first_fill_weight(std::size_t position) {
     return position == 0 ? Real{1} : Real{0};
 }
 
-/// Share in the unified texture: first_fill_share of the inpainted texture and the rest of the average texture; the paper's
-/// texture is the mean of both, first_fill_share = 1/2.
+/// Share in the unified texture: first_fill_share of the inpainted texture and the rest of the average texture; the
+/// paper's texture is the mean of both, first_fill_share = 1/2.
 template <class Real>
 constexpr Real unified_weight(std::size_t position, std::size_t seen, Real first_fill_share) {
     return first_fill_share * first_fill_weight<Real>(position) + (1 - first_fill_share) * average_weight<Real>(seen);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a caller did wrong, as an exception whose text names the function, the argument, what it is and what was expected.
+// What a caller did wrong, as an exception whose text names the function, the argument, what it is and what was
+// expected.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +51,8 @@ void require_extents(char const* function, char const* argument, Found const& fo
     auto const found_text = extents_text(found);
     auto const expected_text = extents_text(expected);
     if (found_text != expected_text) {
-        throw shape_error(std::string(function) + ": " + argument + " is " + found_text + ", expected " + expected_text);
+        throw shape_error(std::string(function) + ": " + argument + " is " + found_text + ", expected " +
+                          expected_text);
     }
 }
 

@@ -25,7 +25,8 @@ using matrix_map = Eigen::Map<std::conditional_t<std::is_const_v<T>, matrix<std:
 template <class T>
 matrix_map<T> to_matrix(strided_view<T, 2> const& view) {
     assert(view.rows_are_contiguous() && "to_matrix: rows of the view are not contiguous");
-    return matrix_map<T>(view.data(), static_cast<Eigen::Index>(view.extent(0)), static_cast<Eigen::Index>(view.extent(1)),
+    return matrix_map<T>(view.data(), static_cast<Eigen::Index>(view.extent(0)),
+                         static_cast<Eigen::Index>(view.extent(1)),
                          Eigen::OuterStride<>(static_cast<Eigen::Index>(view.stride(0))));
 }
 

@@ -23,7 +23,9 @@ namespace genrender {
 /// return; an exception of the body reaches the caller (the first one; indices not yet begun may then be left out).
 /// Results of the library do not depend on the model or on its number of threads.
 template <class Loop>
-concept parallel_loop = requires(Loop const& loop, std::size_t count, void (*body)(std::size_t)) { loop(count, body); };
+concept parallel_loop = requires(Loop const& loop, std::size_t count, void (*body)(std::size_t)) {
+    loop(count, body);
+};
 
 /// The loop on the caller's thread, in order.
 struct sequential_loop {

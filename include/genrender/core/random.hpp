@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Counter-based random numbers: any value of any stream by its address, in any order, on any thread (Salmon et al., SC 2011).
+// Counter-based random numbers: any value of any stream by its address, in any order, on any thread (Salmon et al., SC
+// 2011).
 #pragma once
 
 #include <array>
@@ -18,13 +19,14 @@ constexpr void philox_round(std::array<std::uint32_t, 4>& counter, std::array<st
     auto const product_0 = std::uint64_t{0xD2511F53U} * counter[0];
     auto const product_1 = std::uint64_t{0xCD9E8D57U} * counter[2];
     counter = {static_cast<std::uint32_t>(product_1 >> 32) ^ counter[1] ^ key[0], static_cast<std::uint32_t>(product_1),
-               static_cast<std::uint32_t>(product_0 >> 32) ^ counter[3] ^ key[1], static_cast<std::uint32_t>(product_0)};
+               static_cast<std::uint32_t>(product_0 >> 32) ^ counter[3] ^ key[1],
+               static_cast<std::uint32_t>(product_0)};
 }
 
 } // namespace detail
 
-/// 128 random bits for a 128-bit counter and a 64-bit key: Philox4x32-10 (Salmon et al., 'Parallel Random Numbers: As Easy
-/// as 1, 2, 3', SC 2011, sec. 4.3), whose published test vectors the tests hold.
+/// 128 random bits for a 128-bit counter and a 64-bit key: Philox4x32-10 (Salmon et al., 'Parallel Random Numbers: As
+/// Easy as 1, 2, 3', SC 2011, sec. 4.3), whose published test vectors the tests hold.
 constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) {
     for (int round = 0; round < 10; ++round) {
         if (round > 0) {
@@ -36,8 +38,8 @@ constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> count
     return counter;
 }
 
-/// The address of one random value: three coordinates of the caller's choosing within a stream (object, texel, channel; step,
-/// draw; ...).
+/// The address of one random value: three coordinates of the caller's choosing within a stream (object, texel, channel;
+/// step, draw; ...).
 using random_address = std::array<std::uint32_t, 3>;
 
 /// Random bits at an address; the same for the same seed, stream and address, on every machine.

@@ -13,7 +13,8 @@
 
 // The customisation point of the library's views, all of it: an engine makes its tensor type acceptable by a function
 //     genrender::strided_view<T, Rank> to_view(its_tensor&);
-// in the tensor's own namespace. core/tensor.hpp (xtensor), core/linalg.hpp (Eigen) and core/stack.hpp hold the library's.
+// in the tensor's own namespace. core/tensor.hpp (xtensor), core/linalg.hpp (Eigen) and core/stack.hpp hold the
+// library's.
 
 namespace genrender {
 
@@ -35,8 +36,8 @@ struct view_of_tensor<strided_view<T, Rank>> {
 
 } // namespace detail
 
-/// A view of `Rank` axes over elements of type `T` (const-qualified for input). Strides count elements, may be negative, and
-/// are 0 along a repeated axis. Copying a view copies no element; the memory must outlive it.
+/// A view of `Rank` axes over elements of type `T` (const-qualified for input). Strides count elements, may be
+/// negative, and are 0 along a repeated axis. Copying a view copies no element; the memory must outlive it.
 template <class T, std::size_t Rank>
 class strided_view {
     static_assert(Rank >= 1, "strided_view: a view has at least one axis");
@@ -103,9 +104,7 @@ public:
     }
 
     /// The view of one index of the first axis.
-    constexpr strided_view<T, Rank - 1> operator[](std::size_t index) const
-        requires(Rank > 1)
-    {
+    constexpr strided_view<T, Rank - 1> operator[](std::size_t index) const requires(Rank > 1) {
         assert(index < extents_[0] && "strided_view: index beyond the first axis");
         std::array<std::size_t, Rank - 1> extents{};
         std::array<std::ptrdiff_t, Rank - 1> strides{};
@@ -140,9 +139,7 @@ public:
     }
 
     /// The elements of a one-axis contiguous view, as a span.
-    constexpr std::span<T> row() const
-        requires(Rank == 1)
-    {
+    constexpr std::span<T> row() const requires(Rank == 1) {
         assert(rows_are_contiguous() && "strided_view: row() of elements that are not neighbours");
         return {data_, extents_[0]};
     }
@@ -153,8 +150,8 @@ private:
     strides_type strides_{};
 };
 
-/// A read-only view as a function parameter that leaves the deduction of `Real` and `Rank` to the out-parameter, so that
-/// tensors, mutable views and constant views all convert to it.
+/// A read-only view as a function parameter that leaves the deduction of `Real` and `Rank` to the out-parameter, so
+/// that tensors, mutable views and constant views all convert to it.
 template <class Real, std::size_t Rank>
 using in_view = std::type_identity_t<strided_view<Real const, Rank>>;
 

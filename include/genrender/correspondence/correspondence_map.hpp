@@ -10,42 +10,44 @@
 
 namespace genrender {
 
-/// Tells, at one feature resolution of an animation, which canonical surface point a token of a frame shows, and which token
-/// of a frame shows a surface point. What a surface point is stays the model's own affair: a texel, a place on a mesh.
+/// Tells, at one feature resolution of an animation, which canonical surface point a token of a frame shows, and which
+/// token of a frame shows a surface point. What a surface point is stays the model's own affair: a texel, a place on a
+/// mesh.
 ///
-/// expression                      | type                     | meaning
-/// --------------------------------|--------------------------|----------------------------------------------------------
-/// `typename Map::point_type`      | copyable                 | a canonical surface point
-/// `map.frame_count()`             | size_t                   | frames of the animation
-/// `map.grid()`                    | grid_extents             | height and width of the feature map
-/// `map.point_at(frame, token)`    | optional<point_type>     | the surface point that the token shows; none on the
-///                                 |                          | background
-/// `map.token_at(frame, point)`    | optional<token_index>    | the token that shows the point in that frame; none where it
-///                                 |                          | is hidden or out of view
+/// expression                   | type                  | meaning
+/// -----------------------------|-----------------------|--------------------------------------------------------------
+/// `typename Map::point_type`   | copyable              | a canonical surface point
+/// `map.frame_count()`          | size_t                | frames of the animation
+/// `map.grid()`                 | grid_extents          | height and width of the feature map
+/// `map.point_at(frame, token)` | optional<point_type>  | the surface point that the token shows; none on the
+///                              |                       | background
+/// `map.token_at(frame, point)` | optional<token_index> | the token that shows the point in that frame; none where it
+///                              |                       | is hidden or out of view
 ///
 /// These the compiler cannot check, and a model owes them (tests/support/correspondence_laws.hpp checks them):
-/// the point that a token shows is shown by some token of the same frame; tokens returned lie in the grid; equal questions
-/// get equal answers, from any thread. It does not require that the token that shows a point is the one it was asked from:
-/// where several tokens share a texel, one of them speaks for all.
+/// the point that a token shows is shown by some token of the same frame; tokens returned lie in the grid; equal
+/// questions get equal answers, from any thread. It does not require that the token that shows a point is the one it
+/// was asked from: where several tokens share a texel, one of them speaks for all.
 ///
 /// See also: texel_grid, the paper's own; weighted_correspondence_map, for models that know several tokens a point;
 /// blend_plan, which is compiled from it.
 template <class Map>
-concept correspondence_map =
-    std::copyable<typename Map::point_type> &&
+concept correspondence_map = std::copyable<typename Map::point_type> &&
     requires(Map const& map, frame_index i, token_index t, typename Map::point_type const& point) {
-        { map.frame_count() } -> std::convertible_to<std::size_t>;
-        { map.grid() } -> std::convertible_to<grid_extents>;
-        { map.point_at(i, t) } -> std::same_as<std::optional<typename Map::point_type>>;
-        { map.token_at(i, point) } -> std::same_as<std::optional<token_index>>;
-    };
+    { map.frame_count() } -> std::convertible_to<std::size_t>;
+    { map.grid() } -> std::convertible_to<grid_extents>;
+    { map.point_at(i, t) } -> std::same_as<std::optional<typename Map::point_type>>;
+    { map.token_at(i, point) } -> std::same_as<std::optional<token_index>>;
+};
 
 /// A correspondence_map that answers with several tokens and weights: `map.visit_tokens(frame, point, visit)` calls
-/// `visit(token_index, double weight)` for each token of the frame that shows the point, weights summing to 1, or never.
+/// `visit(token_index, double weight)` for each token of the frame that shows the point, weights summing to 1, or
+/// never.
 template <class Map>
-concept weighted_correspondence_map =
-    correspondence_map<Map> && requires(Map const& map, frame_index i, typename Map::point_type const& point,
-                                        void (*visit)(token_index, double)) { map.visit_tokens(i, point, visit); };
+concept weighted_correspondence_map = correspondence_map<Map> &&
+    requires(Map const& map, frame_index i, typename Map::point_type const& point, void (*visit)(token_index, double)) {
+    map.visit_tokens(i, point, visit);
+};
 
 /// The least that a correspondence_map is, for checking what takes one; never run.
 struct correspondence_map_archetype {

@@ -28,9 +28,9 @@ std::optional<token_index> corresponding_token(Map const& map, frame_index from,
     return point ? map.token_at(from, *point) : std::nullopt;
 }
 
-/// Writes F^j = pi_{i,j}(F^i): each token of frame j receives the feature of the token of frame i that shows the same surface
-/// point; F_j, F_i [tokens, channels]. Returns which tokens were covered; the others of F_j are left as they are. Throws
-/// shape_error or value_error if features or frames do not fit the map.
+/// Writes F^j = pi_{i,j}(F^i): each token of frame j receives the feature of the token of frame i that shows the same
+/// surface point; F_j, F_i [tokens, channels]. Returns which tokens were covered; the others of F_j are left as they
+/// are. Throws shape_error or value_error if features or frames do not fit the map.
 template <class Real, correspondence_map Map>
 std::vector<std::uint8_t> reproject(strided_view<Real, 2> F_j, in_view<Real, 2> F_i, Map const& map, frame_index i,
                                     frame_index j) {

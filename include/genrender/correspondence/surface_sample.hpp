@@ -25,11 +25,11 @@ struct surface_sample {
     pixel at;
 };
 
-/// The sample that stands for a token: of the object that owns most pixels of the token's cell (ties by lowest number), the
-/// pixel nearest to the cell's centre (ties by lowest row, then column). None where the background owns more pixels than all
-/// objects together. Never an average of UVs, which would name a surface point that nobody sees.
-inline std::optional<surface_sample> representative_sample(uv_maps_view const& maps, frame_index frame, grid_extents grid,
-                                                           token_index token) {
+/// The sample that stands for a token: of the object that owns most pixels of the token's cell (ties by lowest number),
+/// the pixel nearest to the cell's centre (ties by lowest row, then column). None where the background owns more pixels
+/// than all objects together. Never an average of UVs, which would name a surface point that nobody sees.
+inline std::optional<surface_sample> representative_sample(uv_maps_view const& maps, frame_index frame,
+                                                           grid_extents grid, token_index token) {
     auto const cell = cell_extents("representative_sample", maps.grid(), grid);
     auto const top = static_cast<std::uint32_t>(token.value / grid.width * cell.height);
     auto const left = static_cast<std::uint32_t>(token.value % grid.width * cell.width);
@@ -48,7 +48,8 @@ inline std::optional<surface_sample> representative_sample(uv_maps_view const& m
     std::size_t covered = 0;
     for_each_covered_pixel([&](pixel p) {
         auto const object = maps.object_at(frame, p);
-        auto const known = std::find_if(owned.begin(), owned.end(), [&](auto const& entry) { return entry.first == object; });
+        auto const known =
+            std::find_if(owned.begin(), owned.end(), [&](auto const& entry) { return entry.first == object; });
         if (known == owned.end()) {
             owned.emplace_back(object, 1);
         } else {
@@ -81,8 +82,8 @@ inline std::optional<surface_sample> representative_sample(uv_maps_view const& m
     return nearest;
 }
 
-/// The texel of the object's T x T texture that holds (u, v): column floor(u T), row floor(v T); coordinates outside [0, 1) go
-/// to the nearest texel. Throws value_error where u or v is not finite.
+/// The texel of the object's T x T texture that holds (u, v): column floor(u T), row floor(v T); coordinates outside
+/// [0, 1) go to the nearest texel. Throws value_error where u or v is not finite.
 inline texel texel_of(surface_sample const& sample, texture_resolution const& resolution) {
     auto const T = static_cast<double>(resolution.of(sample.object));
     auto const clamped = [T](float coordinate) {

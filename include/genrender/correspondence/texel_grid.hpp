@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.2] The paper's own correspondence: tokens correspond when they meet in a texel of a T x T texture per object.
+// [GR sec. 3.2] The paper's own correspondence: tokens correspond when they meet in a texel of a T x T texture per
+// object.
 #pragma once
 
 #include <genrender/core/parallel.hpp>
@@ -26,17 +27,17 @@ enum class texel_reading : std::uint8_t {
 
 /// How texels are read.
 struct texel_grid_settings {
-    /// T, texels along each side of every object's texture. Too low a T merges distinct points, too high a T lets nothing meet
-    /// (paper, supplement). 0 matches each object's T to its density in the maps: a quarter of a token, yet at least two map
-    /// pixels a texel, so that samples seldom miss it.
+    /// T, texels along each side of every object's texture. Too low a T merges distinct points, too high a T lets
+    /// nothing meet (paper, supplement). 0 matches each object's T to its density in the maps: a quarter of a token,
+    /// yet at least two map pixels a texel, so that samples seldom miss it.
     std::size_t T = 0;
     texel_reading reading = texel_reading::nearest_sample;
     /// A texel without a sample of its own takes the nearest sample at most this many texels away on the same object.
     std::size_t dilation = 0;
 };
 
-/// A model of correspondence_map in texels. Geometry is compiled once for an animation: what each token reads, and per frame
-/// which token speaks for each texel that any token reads. Lookups take constant time.
+/// A model of correspondence_map in texels. Geometry is compiled once for an animation: what each token reads, and per
+/// frame which token speaks for each texel that any token reads. Lookups take constant time.
 class texel_grid {
 public:
     /// A texel that some token of the animation reads, counted from 0.
@@ -45,18 +46,18 @@ public:
         friend constexpr auto operator<=>(point_type, point_type) = default;
     };
 
-    /// Compiles the UV maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, UVs are not
-    /// finite, or T exceeds 2^20.
+    /// Compiles the UV maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, UVs
+    /// are not finite, or T exceeds 2^20.
     template <parallel_loop Loop = sequential_loop>
-    texel_grid(uv_maps_view const& maps, grid_extents grid, texel_grid_settings const& settings = {}, Loop const& loop = {})
+    texel_grid(uv_maps_view const& maps, grid_extents grid, texel_grid_settings const& settings = {},
+               Loop const& loop = {})
         : frames_(maps.frame_count()), grid_(grid), cell_(cell_extents("texel_grid", maps.grid(), grid)),
           resolution_(settings.T > 0 ? texture_resolution::same(settings.T)
                                      : texture_resolution::matched(maps, grid, texels_per_token(cell_))) {
         number_slots(maps, loop);
         visible_.resize(frames_);
-        loop(frames_, [&](std::size_t i) {
-            visible_[i] = visible_in({static_cast<std::uint32_t>(i)}, maps, settings);
-        });
+        loop(frames_,
+             [&](std::size_t i) { visible_[i] = visible_in({static_cast<std::uint32_t>(i)}, maps, settings); });
         slots_.clear();
     }
 
@@ -123,7 +124,8 @@ private:
         });
         for (std::size_t entry = 0; entry < read_.size(); ++entry) {
             if (read_[entry] != not_covered) {
-                read_[entry] = slots_.try_emplace(texels[entry], static_cast<std::uint32_t>(slots_.size())).first->second;
+                read_[entry] =
+                    slots_.try_emplace(texels[entry], static_cast<std::uint32_t>(slots_.size())).first->second;
             }
         }
         slot_count_ = slots_.size();

@@ -11,9 +11,9 @@
 
 namespace genrender {
 
-/// Writes T = pi^-1(F): each texel that frame i sees receives the feature of the token that speaks for it; T [slots, channels],
-/// F [tokens, channels]. Returns which slots were filled; the others of T are left as they are. Throws shape_error or
-/// value_error if they do not fit the map. The library itself never builds a texture, see blend_plan.
+/// Writes T = pi^-1(F): each texel that frame i sees receives the feature of the token that speaks for it; T [slots,
+/// channels], F [tokens, channels]. Returns which slots were filled; the others of T are left as they are. Throws
+/// shape_error or value_error if they do not fit the map. The library itself never builds a texture, see blend_plan.
 template <class Real>
 std::vector<std::uint8_t> unproject(strided_view<Real, 2> T, in_view<Real, 2> F, texel_grid const& map, frame_index i) {
     require_frame("unproject", "i", map, i);
@@ -33,7 +33,8 @@ std::vector<std::uint8_t> unproject(strided_view<Real, 2> T, in_view<Real, 2> F,
 }
 
 /// Writes F = pi(T): each token of frame i that shows an object receives the texel it reads; F [tokens, channels],
-/// T [slots, channels]. Returns which tokens were covered; the others of F are left as they are. Throws as unproject does.
+/// T [slots, channels]. Returns which tokens were covered; the others of F are left as they are. Throws as unproject
+/// does.
 template <class Real>
 std::vector<std::uint8_t> project(strided_view<Real, 2> F, in_view<Real, 2> T, texel_grid const& map, frame_index i) {
     require_frame("project", "i", map, i);

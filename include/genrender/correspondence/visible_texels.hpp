@@ -15,8 +15,8 @@
 
 namespace genrender {
 
-/// The visible texels of one frame: a bit per slot with counts of the bits before each word, so that the entries of a slot are
-/// found by its rank and invisible slots cost one bit.
+/// The visible texels of one frame: a bit per slot with counts of the bits before each word, so that the entries of a
+/// slot are found by its rank and invisible slots cost one bit.
 class visible_texels {
 public:
     /// A token that speaks for a texel, with its share.
@@ -30,9 +30,9 @@ public:
     public:
         explicit builder(std::size_t slots) : nearest_(slots) {}
 
-        /// Offers a sample of `token` at squared `distance` from the texel's centre. The nearest sample wins, the first offered
-        /// at equal distance; with `average` all samples inside the texel share it, and outside ones stand in only if there
-        /// are none.
+        /// Offers a sample of `token` at squared `distance` from the texel's centre. The nearest sample wins, the first
+        /// offered at equal distance; with `average` all samples inside the texel share it, and outside ones stand in
+        /// only if there are none.
         void offer(std::uint32_t slot, token_index token, double distance, bool is_inside, bool average) {
             auto& best = nearest_[slot];
             // A texel's own sample beats any that is borrowed from a neighbour.
@@ -63,8 +63,8 @@ public:
                 } else {
                     for (auto run = first; run != sample;) {
                         auto const next = std::upper_bound(run, sample, *run);
-                        table.entries_.push_back({run->second, static_cast<double>(next - run) /
-                                                                   static_cast<double>(sample - first)});
+                        table.entries_.push_back(
+                            {run->second, static_cast<double>(next - run) / static_cast<double>(sample - first)});
                         run = next;
                     }
                 }

@@ -14,10 +14,10 @@
 
 namespace genrender {
 
-/// Root of the mean squared difference, over all channels, between pixels of frames i and i + interval that show the same
-/// surface point and are visible in both, over all i; in the units of the images. None if there is no such pair of pixels.
-/// `images` [frames, channels, height, width]; `map` holds the correspondences at the images' resolution. Background never
-/// counts. Throws shape_error if images and map differ, value_error for an interval of 0.
+/// Root of the mean squared difference, over all channels, between pixels of frames i and i + interval that show the
+/// same surface point and are visible in both, over all i; in the units of the images. None if there is no such pair of
+/// pixels. `images` [frames, channels, height, width]; `map` holds the correspondences at the images' resolution.
+/// Background never counts. Throws shape_error if images and map differ, value_error for an interval of 0.
 template <class Real, correspondence_map Map>
 std::optional<double> correspondence_error(strided_view<Real, 4> images, Map const& map, std::size_t interval) {
     auto const grid = grid_extents(map.grid());

@@ -32,9 +32,9 @@ struct depth_maps {
     grid_extents grid() const { return {depth.shape()[1], depth.shape()[2]}; }
 };
 
-/// Inverse depth of the whole sequence on one scale [frames, height, width]: 1 at the nearest covered pixel of the animation,
-/// 0 at the farthest and on the background; all covered pixels are 1 if they are equally far. One scale for all frames,
-/// because a scale per frame flickers. Throws shape_error if the two maps differ, value_error
+/// Inverse depth of the whole sequence on one scale [frames, height, width]: 1 at the nearest covered pixel of the
+/// animation, 0 at the farthest and on the background; all covered pixels are 1 if they are equally far. One scale for
+/// all frames, because a scale per frame flickers. Throws shape_error if the two maps differ, value_error
 /// at a covered depth that is not finite and > 0.
 inline tensor<float, 3> sequence_inverse_depth(depth_maps const& maps) {
     require_extents("sequence_inverse_depth", "maps.depth", maps.depth.shape(), maps.coverage.shape());
@@ -59,8 +59,8 @@ inline tensor<float, 3> sequence_inverse_depth(depth_maps const& maps) {
     return result;
 }
 
-/// Means of `map` [frames, height, width] over the cells of a coarser grid [frames, height, width of `grid`]: inverse depth at
-/// the size that a network's hint has. Throws value_error unless the grid divides the map.
+/// Means of `map` [frames, height, width] over the cells of a coarser grid [frames, height, width of `grid`]: inverse
+/// depth at the size that a network's hint has. Throws value_error unless the grid divides the map.
 inline tensor<float, 3> cell_means(tensor<float, 3> const& map, grid_extents grid) {
     auto const cell = cell_extents("cell_means", {map.shape()[1], map.shape()[2]}, grid);
     auto means = tensor<float, 3>::from_shape({map.shape()[0], grid.height, grid.width});

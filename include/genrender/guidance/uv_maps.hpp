@@ -12,9 +12,10 @@ namespace genrender {
 
 /// UV, object and coverage of every pixel of an animation, as a renderer without antialiasing writes them.
 struct uv_maps {
-    tensor<float, 4> uv;               ///< texture coordinates (u, v) [frames, height, width, 2]; (0, 0) is the first texel's corner
-    tensor<std::uint32_t, 3> object;   ///< number of the object [frames, height, width]; meaningless where not covered
-    tensor<std::uint8_t, 3> coverage;  ///< 1 where the pixel shows an object, 0 on the background [frames, height, width]
+    tensor<float, 4> uv; ///< texture coordinates (u, v) [frames, height, width, 2]; (0, 0) is the first texel's corner
+    tensor<std::uint32_t, 3> object; ///< number of the object [frames, height, width]; meaningless where not covered
+    tensor<std::uint8_t, 3>
+        coverage; ///< 1 where the pixel shows an object, 0 on the background [frames, height, width]
 
     uv_maps() = default;
 

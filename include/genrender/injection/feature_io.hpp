@@ -21,13 +21,13 @@ namespace genrender {
 /// Alg. 1 finishes the keyframe pass before the injected pass begins. What it points to lives as long as the processor.
 template <class Features, class Real>
 struct feature_inputs {
-    bool attends_to_stack = false;           ///< eq. 3: keys and values of all frames of the stack
-    Features const* f_KF = nullptr;          ///< eq. 5: joined to each frame's own f, [keyframes, tokens, channels]
+    bool attends_to_stack = false;  ///< eq. 3: keys and values of all frames of the stack
+    Features const* f_KF = nullptr; ///< eq. 5: joined to each frame's own f, [keyframes, tokens, channels]
     std::vector<std::optional<std::size_t>> left_out; ///< per frame, the keyframe of f_KF that it does not join
-    Features const* F_KF = nullptr;          ///< eq. 6: F_bar^i = rows[i] * F_KF, by gather or by mix_rows
-    std::vector<sparse_rows<Real>> rows;     ///< per frame, the plan; empty without F_KF
-    Real alpha = 0;                          ///< eq. 6
-    bool is_recorded = false;                ///< whether the graph's f and F are to be handed to `record_features`
+    Features const* F_KF = nullptr;                   ///< eq. 6: F_bar^i = rows[i] * F_KF, by gather or by mix_rows
+    std::vector<sparse_rows<Real>> rows;              ///< per frame, the plan; empty without F_KF
+    Real alpha = 0;                                   ///< eq. 6
+    bool is_recorded = false; ///< whether the graph's f and F are to be handed to `record_features`
 };
 
 /// The extra inputs that plain attention asks for: none.
@@ -102,12 +102,11 @@ void record_features(injector<Features, Real> const&, attention_place, std::type
 /// See also: attention_processor, the same contract for engines that call back; plain_attention, recorder and injector,
 /// which are models.
 template <class Processor, class Features, class Real>
-concept feature_io_processor =
-    requires(Processor const& processor, attention_place place, std::span<frame_index const> frames,
-             Features const& f) {
-        { inputs_at<Features, Real>(processor, place, frames) } -> std::same_as<feature_inputs<Features, Real>>;
-        record_features(processor, place, f, f);
-    };
+concept feature_io_processor = requires(Processor const& processor, attention_place place,
+                                        std::span<frame_index const> frames, Features const& f) {
+    { inputs_at<Features, Real>(processor, place, frames) } -> std::same_as<feature_inputs<Features, Real>>;
+    record_features(processor, place, f, f);
+};
 
 /// The least that a feature_io_processor is, for checking denoisers; never run. The archetype of both ways in is one,
 /// so that the concept denoiser also holds for engines that ask for a feature_io_processor.

@@ -15,26 +15,27 @@
 
 namespace genrender {
 
-/// What an engine brings of a self-attention module: each of `query`, `key`, `value` writes W f [tokens, channels] for the
-/// features f [tokens, channels] of one frame (out-argument first).
+/// What an engine brings of a self-attention module: each of `query`, `key`, `value` writes W f [tokens, channels] for
+/// the features f [tokens, channels] of one frame (out-argument first).
 template <class Projections, class Real>
-concept attention_projections = requires(Projections const& module, strided_view<Real, 2> out, strided_view<Real const, 2> f) {
+concept attention_projections = requires(Projections const& module, strided_view<Real, 2> out,
+                                         strided_view<Real const, 2> f) {
     module.query(out, f);
     module.key(out, f);
     module.value(out, f);
     { module.heads() } -> std::convertible_to<std::size_t>;
 };
 
-/// A model of attention_call over views: `f` is read where the engine keeps it, results are new memory that the handle owns.
-/// Frames run through `Loop`.
+/// A model of attention_call over views: `f` is read where the engine keeps it, results are new memory that the handle
+/// owns. Frames run through `Loop`.
 template <class Real, attention_projections<Real> Projections, parallel_loop Loop = sequential_loop>
 class host_attention_call {
 public:
     using real_type = Real;
     using features_type = host_features<Real>;
 
-    /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]. Throws shape_error if f has
-    /// another number of frames. `frames`, f, `module` and `loop` must outlive the call.
+    /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]. Throws shape_error if f
+    /// has another number of frames. `frames`, f, `module` and `loop` must outlive the call.
     host_attention_call(attention_place place, std::span<frame_index const> frames, features_type f,
                         Projections const& module, Loop const& loop = default_loop())
         : place_(place), frames_(frames), f_(std::move(f)), module_(&module), loop_(&loop) {
@@ -58,7 +59,8 @@ public:
 
     /// [GR eq. 1] for every frame of Q over its own list of blocks.
     features_type attend(features_type const& Q, attention_sources<features_type> const& sources) const {
-        require_extents("host_attention_call::attend", "sources", std::array{sources.size()}, std::array{Q.extents()[0]});
+        require_extents("host_attention_call::attend", "sources", std::array{sources.size()},
+                        std::array{Q.extents()[0]});
         auto F = features_type::allocate(Q.extents());
         (*loop_)(sources.size(), [&](std::size_t i) {
             std::vector<key_value_view<Real>> blocks;
@@ -88,9 +90,8 @@ private:
     template <class Projection>
     features_type projected(features_type const& f, Projection const& project) const {
         auto out = features_type::allocate(f.extents());
-        (*loop_)(f.extents()[0], [&](std::size_t i) {
-            project(out.view()[i], strided_view<Real const, 2>(f.view()[i]));
-        });
+        (*loop_)(f.extents()[0],
+                 [&](std::size_t i) { project(out.view()[i], strided_view<Real const, 2>(f.view()[i])); });
         return out;
     }
 

@@ -55,8 +55,8 @@ public:
         if (kept != nullptr && settings_.pre_attention) {
             require_value(kept->K_KF && kept->V_KF, "injector", "K_KF", "missing", "keyframes recorded by callbacks");
             for (std::size_t i = 0; i < frames.size(); ++i) {
-                sources[i] = pre_attention_sources(K, V, i, *kept->K_KF, *kept->V_KF, keyframes_.size(),
-                                                   left_out(frames[i]));
+                sources[i] =
+                    pre_attention_sources(K, V, i, *kept->K_KF, *kept->V_KF, keyframes_.size(), left_out(frames[i]));
             }
         }
         Features F_hat = call.attend(Q, sources);

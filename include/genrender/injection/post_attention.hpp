@@ -10,12 +10,12 @@
 namespace genrender {
 
 /// Replaces F_hat [tokens, channels] by F_out = alpha F_bar + (1 - alpha) F_hat, with F_bar = rows * F_KF and F_KF
-/// [keyframes, tokens, channels]; a token that no keyframe covers keeps F_hat. F_hat is read once and written once, F_bar is
-/// never in memory. alpha = 0 changes nothing. Throws shape_error if F_hat or F_KF do not fit, value_error if alpha is not
-/// finite.
+/// [keyframes, tokens, channels]; a token that no keyframe covers keeps F_hat. F_hat is read once and written once,
+/// F_bar is never in memory. alpha = 0 changes nothing. Throws shape_error if F_hat or F_KF do not fit, value_error if
+/// alpha is not finite.
 template <class Real>
-void post_attention(strided_view<Real, 2> F_hat, in_view<Real, 3> F_KF, sparse_rows<std::type_identity_t<Real>> const& rows,
-                    std::type_identity_t<Real> alpha) {
+void post_attention(strided_view<Real, 2> F_hat, in_view<Real, 3> F_KF,
+                    sparse_rows<std::type_identity_t<Real>> const& rows, std::type_identity_t<Real> alpha) {
     require_value(std::isfinite(alpha), "post_attention", "alpha", alpha, "a finite number");
     if (alpha == 0) {
         return;

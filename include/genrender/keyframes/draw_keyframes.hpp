@@ -34,13 +34,14 @@ struct keyframe_settings {
 /// KF = shuffle({i_1, ..., i_m}): different frames of an animation of `frame_count` frames, in an order drawn anew each
 /// `step`, which is also the order in which their features fill the texture. Every step can be asked for alone. Throws
 /// value_error if no keyframe is asked for, more than there are frames, or fixed ones repeat or do not exist.
-inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings, std::size_t frame_count, std::size_t step) {
+inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings, std::size_t frame_count,
+                                               std::size_t step) {
     if (settings.drawing == keyframe_drawing::fixed) {
         require_value(!settings.frames.empty(), "draw_keyframes", "frames", "empty", "at least one keyframe");
         std::set<frame_index> seen;
         for (auto const frame : settings.frames) {
-            require_value(frame.value < frame_count && seen.insert(frame).second, "draw_keyframes", "frames", frame.value,
-                          ("different frames below " + std::to_string(frame_count)).c_str());
+            require_value(frame.value < frame_count && seen.insert(frame).second, "draw_keyframes", "frames",
+                          frame.value, ("different frames below " + std::to_string(frame_count)).c_str());
         }
         return settings.frames;
     }
@@ -57,7 +58,8 @@ inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings
         for (std::size_t k = 0; k < m; ++k) {
             auto const begin = k * frame_count / m;
             auto const end = (k + 1) * frame_count / m;
-            keyframes.push_back({static_cast<std::uint32_t>(begin + draw_below(end - begin, static_cast<std::uint32_t>(k)))});
+            keyframes.push_back(
+                {static_cast<std::uint32_t>(begin + draw_below(end - begin, static_cast<std::uint32_t>(k)))});
         }
     } else {
         for (std::uint32_t i = 0; i < frame_count; ++i) {

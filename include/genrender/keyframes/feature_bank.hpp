@@ -26,7 +26,8 @@ struct keyframe_features {
 template <class Features>
 class feature_bank {
 public:
-    feature_bank(std::size_t sites, std::size_t branches) : sites_(sites), branches_(branches), places_(sites * branches) {}
+    feature_bank(std::size_t sites, std::size_t branches)
+        : sites_(sites), branches_(branches), places_(sites * branches) {}
 
     /// Keeps the features of a place, replacing earlier ones. Throws value_error if the place does not exist.
     void put(attention_place place, keyframe_features<Features> features) {

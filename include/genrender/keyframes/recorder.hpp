@@ -14,13 +14,13 @@ namespace genrender {
 /// Which places take part in the injection; asked once per place and pass.
 using place_filter = std::function<bool(attention_place)>;
 
-/// Runs the keyframes of a step in lockstep and keeps their features in a bank. At places that the filter leaves out the
-/// network stays as it is and nothing is kept.
+/// Runs the keyframes of a step in lockstep and keeps their features in a bank. At places that the filter leaves out
+/// the network stays as it is and nothing is kept.
 template <class Features>
 class recorder {
 public:
-    /// Records into `bank`, which must outlive the recorder. With `extended` keyframes attend to each other (eq. 3), else each
-    /// to itself (the ablation without pre-attention injection).
+    /// Records into `bank`, which must outlive the recorder. With `extended` keyframes attend to each other (eq. 3),
+    /// else each to itself (the ablation without pre-attention injection).
     recorder(feature_bank<Features>& bank, place_filter takes_part, bool extended = true)
         : bank_(&bank), takes_part_(std::move(takes_part)), extended_(extended) {}
 

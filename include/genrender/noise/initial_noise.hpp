@@ -31,9 +31,9 @@ enum class background_noise : std::uint8_t {
 struct noise_settings {
     noise_kind kind = noise_kind::uv;
     background_noise background = background_noise::fixed;
-    /// T, texels along each side of an object's noise texture, which is read by the nearest texel: a low T repeats values in
-    /// neighbouring pixels, a high T gives each frame noise of its own. 0 matches each object's T to its density in the maps,
-    /// one texel a latent pixel.
+    /// T, texels along each side of an object's noise texture, which is read by the nearest texel: a low T repeats
+    /// values in neighbouring pixels, a high T gives each frame noise of its own. 0 matches each object's T to its
+    /// density in the maps, one texel a latent pixel.
     std::size_t T = 0;
     std::uint64_t seed = 0;
 };
@@ -50,7 +50,8 @@ void initial_noise(strided_view<Real, 4> z, uv_maps_view const& maps, std::span<
     grid_extents const grid{z.extent(2), z.extent(3)};
     cell_extents("initial_noise", maps.grid(), grid);
     for (auto const frame : frames) {
-        require_value(frame.value < maps.frame_count(), "initial_noise", "frames", frame.value, "frames of the UV maps");
+        require_value(frame.value < maps.frame_count(), "initial_noise", "frames", frame.value,
+                      "frames of the UV maps");
     }
     auto const resolution = settings.kind != noise_kind::uv ? texture_resolution::same(1) // No texture is read.
                             : settings.T > 0                ? texture_resolution::same(settings.T)
@@ -59,17 +60,17 @@ void initial_noise(strided_view<Real, 4> z, uv_maps_view const& maps, std::span<
 
     loop(frames.size(), [&](std::size_t i) {
         for (std::uint32_t t = 0; t < grid.size(); ++t) {
-            auto const sample = settings.kind == noise_kind::uv
-                                    ? representative_sample(maps, frames[i], grid, {t})
-                                    : std::nullopt;
-            auto const differs_by_frame = settings.kind == noise_kind::independent ||
-                                          (settings.kind == noise_kind::uv &&
-                                           settings.background == background_noise::independent);
+            auto const sample =
+                settings.kind == noise_kind::uv ? representative_sample(maps, frames[i], grid, {t}) : std::nullopt;
+            auto const differs_by_frame =
+                settings.kind == noise_kind::independent ||
+                (settings.kind == noise_kind::uv && settings.background == background_noise::independent);
             for (std::uint32_t c = 0; c < z.extent(1); ++c) {
                 auto const value =
-                    sample             ? z_UV(texel_of(*sample, resolution), c)
-                    : differs_by_frame ? normal_value(settings.seed, random_stream::frame_noise, {frames[i].value, t, c})
-                                       : normal_value(settings.seed, random_stream::background_noise, {0, t, c});
+                    sample ? z_UV(texel_of(*sample, resolution), c)
+                    : differs_by_frame
+                        ? normal_value(settings.seed, random_stream::frame_noise, {frames[i].value, t, c})
+                        : normal_value(settings.seed, random_stream::background_noise, {0, t, c});
                 z(i, c, t / grid.width, t % grid.width) = static_cast<Real>(value);
             }
         }

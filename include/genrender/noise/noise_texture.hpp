@@ -9,8 +9,8 @@
 
 namespace genrender {
 
-/// Noise of every texel of every object's texture, for any number of channels. Nothing is stored: a value is a function of
-/// its address, so any frame can be made in any order.
+/// Noise of every texel of every object's texture, for any number of channels. Nothing is stored: a value is a function
+/// of its address, so any frame can be made in any order.
 struct noise_texture {
     std::uint64_t seed = 0;
 

@@ -40,16 +40,17 @@ enum class without_background : std::uint8_t {
 template <class Real>
 struct adain_settings {
     bool enabled = true;
-    Real window_begin = 0; ///< first and
-    Real window_end = 1;   ///< last share of the steps in which it runs, [begin, end)
+    Real window_begin = 0;        ///< first and
+    Real window_end = 1;          ///< last share of the steps in which it runs, [begin, end)
     std::size_t least_pixels = 2; ///< background pixels below which `fallback` decides; at least 2
     without_background fallback = without_background::skip;
     bool on_noisy_latents = false; ///< normalise z_{t-1} after the sampler's step instead of the clean estimates
 };
 
-/// Normalises a sequence z [frames, channels, height, width] in place: each frame's statistics over its own `background`
-/// [frames, height, width] become those of frame 0 over its own. Returns the frames that were skipped for want of background
-/// (all of them if frame 0 has none). Throws shape_error if the mask does not fit.
+/// Normalises a sequence z [frames, channels, height, width] in place: each frame's statistics over its own
+/// `background`
+/// [frames, height, width] become those of frame 0 over its own. Returns the frames that were skipped for want of
+/// background (all of them if frame 0 has none). Throws shape_error if the mask does not fit.
 template <class Real>
 std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view<std::uint8_t const, 3> background,
                                            adain_settings<std::type_identity_t<Real>> const& settings = {}) {

@@ -21,8 +21,8 @@ struct channel_statistics {
 };
 
 /// Statistics of z [channels, height, width] over the pixels whose `mask` [height, width] is not 0: mean and
-/// sqrt(unbiased variance + epsilon). With fewer than 2 pixels there is no variance: `pixels` says so and means and deviations
-/// are 0 and 1. Throws shape_error if the mask does not fit.
+/// sqrt(unbiased variance + epsilon). With fewer than 2 pixels there is no variance: `pixels` says so and means and
+/// deviations are 0 and 1. Throws shape_error if the mask does not fit.
 template <class Real>
 channel_statistics<Real> masked_statistics(strided_view<Real const, 3> z, strided_view<std::uint8_t const, 2> mask,
                                            std::type_identity_t<Real> epsilon = Real(1e-5)) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// [GR alg. 1] Generative Rendering: from the UV maps of an animated scene to consistent latents, with the user's denoiser.
+// [GR alg. 1] Generative Rendering: from the UV maps of an animated scene to consistent latents, with the user's
+// denoiser.
 #pragma once
 
 #include <genrender/guidance/background_mask.hpp>
@@ -22,18 +23,20 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
     require_value(settings.steps > 0, "render", "settings.steps", settings.steps, "at least one step");
     require_value(settings.frames_per_call > 0, "render", "settings.frames_per_call", settings.frames_per_call,
                   "at least one frame");
-    require_value(settings.window_begin >= 0 && settings.window_end <= 1 && settings.window_begin <= settings.window_end,
+    require_value(settings.window_begin >= 0 && settings.window_end <= 1 &&
+                      settings.window_begin <= settings.window_end,
                   "render", "settings.window_begin", settings.window_begin, "0 <= window_begin <= window_end <= 1");
     if (settings.window_begin < settings.window_end) {
         draw_keyframes(settings.keyframes, frames, 0);
     }
 }
 
-/// Renders an animation with a denoiser: z_0 [frames, channels, height, width], the clean latents of all frames, for the
-/// user's decoder. UV maps [frames, height, width] are of full resolution, a whole multiple of the denoiser's latent grid and
-/// feature grids; the denoiser owns prompt and depth. `make_map(grid)` compiles the correspondence map of a feature
-/// resolution. The same seeds give the same frames with every `loop`, bit for bit. Throws value_error or shape_error for
-/// arguments that do not fit, before anything is run; cancelled if the observer ends the run; what the denoiser throws.
+/// Renders an animation with a denoiser: z_0 [frames, channels, height, width], the clean latents of all frames, for
+/// the user's decoder. UV maps [frames, height, width] are of full resolution, a whole multiple of the denoiser's
+/// latent grid and feature grids; the denoiser owns prompt and depth. `make_map(grid)` compiles the correspondence map
+/// of a feature resolution. The same seeds give the same frames with every `loop`, bit for bit. Throws value_error or
+/// shape_error for arguments that do not fit, before anything is run; cancelled if the observer ends the run; what the
+/// denoiser throws.
 template <denoiser Phi, class MakeMap, parallel_loop Loop = sequential_loop>
 latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
@@ -72,8 +75,10 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
     // for t = T, ..., 1: keyframes, features, blending, injection, normalisation: see sequence_denoiser
     auto const keyframes = settings.keyframes.drawing == keyframe_drawing::fixed ? settings.keyframes.frames.size()
                                                                                  : settings.keyframes.count;
-    progress_meter meter(settings.steps, evaluations(settings.method, settings.steps) * (N + keyframes), std::move(observer));
-    sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter, report);
+    progress_meter meter(settings.steps, evaluations(settings.method, settings.steps) * (N + keyframes),
+                         std::move(observer));
+    sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
+                              report);
     return sample(settings.method, D, std::move(z), sigmas, [&](std::size_t step, latents<Real>& z_next) {
         if (settings.normalization.enabled && settings.normalization.on_noisy_latents) {
             D.normalize(z_next, step);

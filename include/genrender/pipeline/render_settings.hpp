@@ -15,8 +15,8 @@
 
 namespace genrender {
 
-/// Which self-attention modules take part: all of the denoising network's decoder, in every guidance branch. The encoder and
-/// a ControlNet stay as they are.
+/// Which self-attention modules take part: all of the denoising network's decoder, in every guidance branch. The
+/// encoder and a ControlNet stay as they are.
 inline bool is_in_decoder(attention_site const& site, std::uint32_t /*branch*/) {
     return site.network == network_kind::denoiser && site.part == network_part::decoder;
 }
@@ -24,10 +24,10 @@ inline bool is_in_decoder(attention_site const& site, std::uint32_t /*branch*/) 
 /// Settings of one run of Alg. 1.
 template <class Real>
 struct render_settings {
-    std::size_t steps = 50;           ///< T, denoising steps
-    Real sigma_min = Real(0.0292);    ///< lowest noise level before 0 (Stable Diffusion's)
-    Real sigma_max = Real(14.6146);   ///< noise level of the initial latents
-    Real rho = 7;                     ///< spacing of the levels [EDM eq. 5]
+    std::size_t steps = 50;         ///< T, denoising steps
+    Real sigma_min = Real(0.0292);  ///< lowest noise level before 0 (Stable Diffusion's)
+    Real sigma_max = Real(14.6146); ///< noise level of the initial latents
+    Real rho = 7;                   ///< spacing of the levels [EDM eq. 5]
     sampler method = sampler::euler;
 
     noise_settings noise;               ///< sec. 3.3
@@ -41,14 +41,14 @@ struct render_settings {
     std::function<Real(std::size_t step, attention_site const&)> alpha = [](std::size_t, attention_site const&) {
         return Real(0.7);
     };
-    bool pre_attention = true;            ///< eq. 3 and 5; without it no frame attends to another
-    bool post_attention = true;           ///< eq. 6
-    bool keeps_own_copy = true;           ///< eq. 5 as written: a keyframe meets its own tokens twice
-    Real first_fill_share = Real(0.5);    ///< of the inpainted texture in the unified one
-    Real window_begin = 0;                ///< first and
-    Real window_end = 1;                  ///< last share of the steps with keyframes and injection, [begin, end)
+    bool pre_attention = true;         ///< eq. 3 and 5; without it no frame attends to another
+    bool post_attention = true;        ///< eq. 6
+    bool keeps_own_copy = true;        ///< eq. 5 as written: a keyframe meets its own tokens twice
+    Real first_fill_share = Real(0.5); ///< of the inpainted texture in the unified one
+    Real window_begin = 0;             ///< first and
+    Real window_end = 1;               ///< last share of the steps with keyframes and injection, [begin, end)
 
-    std::size_t frames_per_call = 1;      ///< frames that the injected pass gives the denoiser at once
+    std::size_t frames_per_call = 1; ///< frames that the injected pass gives the denoiser at once
 };
 
 } // namespace genrender

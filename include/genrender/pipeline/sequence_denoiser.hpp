@@ -30,8 +30,8 @@
 
 namespace genrender {
 
-/// The diffusion step at a noise level: the step i with sigmas[i] >= sigma > sigmas[i + 1]. A second evaluation within a step,
-/// such as Heun's, thereby counts to the step that begins at its own level.
+/// The diffusion step at a noise level: the step i with sigmas[i] >= sigma > sigmas[i + 1]. A second evaluation within
+/// a step, such as Heun's, thereby counts to the step that begins at its own level.
 template <class Real>
 std::size_t step_at(std::span<Real const> sigmas, std::type_identity_t<Real> sigma) {
     std::size_t step = 0;
@@ -48,25 +48,26 @@ bool is_in_window(std::size_t step, std::size_t steps, Real begin, std::type_ide
     return share >= begin && share < end;
 }
 
-/// D(z, sigma) of a whole animation: draws keyframes, records their features, blends them along the correspondences, denoises
-/// every frame with them and normalises the clean estimates. Any sampler drives it; it keeps nothing from one evaluation to
-/// the next, and what it draws depends on the seed and the noise level alone.
+/// D(z, sigma) of a whole animation: draws keyframes, records their features, blends them along the correspondences,
+/// denoises every frame with them and normalises the clean estimates. Any sampler drives it; it keeps nothing from one
+/// evaluation to the next, and what it draws depends on the seed and the noise level alone.
 template <denoiser Phi, correspondence_map Map, parallel_loop Loop>
 class sequence_denoiser {
 public:
     using real_type = typename Phi::real_type;
     using features_type = typename Phi::features_type;
 
-    /// `sigmas` are the run's noise levels; `background` [frames, height, width] of the latents. Everything is referred to and
-    /// must outlive the sequence denoiser.
-    sequence_denoiser(Phi const& phi, correspondence_set<Map> const& maps, strided_view<std::uint8_t const, 3> background,
-                      std::span<real_type const> sigmas, render_settings<real_type> const& settings, Loop const& loop,
-                      progress_meter& meter, render_report& report)
+    /// `sigmas` are the run's noise levels; `background` [frames, height, width] of the latents. Everything is referred
+    /// to and must outlive the sequence denoiser.
+    sequence_denoiser(Phi const& phi, correspondence_set<Map> const& maps,
+                      strided_view<std::uint8_t const, 3> background, std::span<real_type const> sigmas,
+                      render_settings<real_type> const& settings, Loop const& loop, progress_meter& meter,
+                      render_report& report)
         : phi_(&phi), maps_(&maps), background_(background), sigmas_(sigmas), settings_(&settings), loop_(&loop),
           meter_(&meter), report_(&report) {}
 
-    /// The clean estimates of all frames of z [frames, channels, height, width]. Throws value_error if an estimate is not
-    /// finite, cancelled if the observer says so, and what the denoiser throws.
+    /// The clean estimates of all frames of z [frames, channels, height, width]. Throws value_error if an estimate is
+    /// not finite, cancelled if the observer says so, and what the denoiser throws.
     latents<real_type> operator()(latents<real_type> const& z, real_type sigma) const {
         auto const step = step_at(sigmas_, sigma);
         auto x0 = latents<real_type>::from_shape(z.shape());
