@@ -93,7 +93,7 @@ demo() {
     install_packages $demo_packages
     workflow demo
     output=build/demo_output
-    render="build/demo/examples/generative_rendering --scene walking_figure"
+    render="build/demo/examples/generative_rendering --scene walking_figure --seed 4"
     prompt="marble stripes"
     say "Rendering frame by frame"
     $render --prompt "$prompt" --method per_frame --out $output/per_frame

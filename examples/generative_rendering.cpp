@@ -48,9 +48,9 @@ void run(render_options const& options, guidance_source const& source, threaded_
         frames.push_back(rgb_picture(to_view(images)[i]));
     }
     write_pictures(options.out, source.guidance, frames);
-    auto const name = std::string(options.is_per_frame ? "per frame" : "ours");
     if (!options.beside.empty()) {
-        write_comparison(options.out, options.beside, "before", frames, name);
+        write_comparison(options.out, options.beside, earlier_method(options.beside), frames,
+                         method_name(options.is_per_frame));
     }
     auto json = report_of(options, source, report, images);
     json["seconds"] = seconds_of(report, total.seconds(), rendering_seconds);
@@ -76,6 +76,9 @@ int main(int argc, char** argv) {
         loop = threaded_loop(options.threads);
         prompt_rows(options.prompt);
         make_folder(options.out);
+        if (!options.beside.empty()) {
+            earlier_method(options.beside);
+        }
         source = load_guidance(options, loop);
         auto const frame_count = source.guidance.uv.frame_count();
         options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));

@@ -5,6 +5,7 @@
 #include "guidance_source.hpp"
 #include "render_options.hpp"
 
+#include <genrender/core/error.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/evaluation/correspondence_error.hpp>
 #include <genrender/pipeline/render_report.hpp>
@@ -18,6 +19,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace genrender::examples {
@@ -38,6 +41,20 @@ inline nlohmann::ordered_json seconds_of(render_report const& report, double tot
     auto const parts = report.denoiser_seconds() + report.library_seconds();
     auto const library = parts > 0 ? rendering * report.library_seconds() / parts : rendering;
     return {{"total", total}, {"denoiser", rendering - library}, {"library", library}, {"other", total - rendering}};
+}
+
+/// The name of a method for a picture's label.
+inline std::string method_name(bool is_per_frame) { return is_per_frame ? "per frame" : "genrender"; }
+
+/// The method of an earlier run in `folder`, by its report.json. Throws file_error if there is none or it says none.
+inline std::string earlier_method(std::filesystem::path const& folder) {
+    auto const path = folder / "report.json";
+    std::ifstream stream(path);
+    auto const json = nlohmann::json::parse(stream, nullptr, false);
+    if (!stream || !json.is_object() || !json.contains("method")) {
+        throw file_error(path.string() + ": is no report of a run, expected the folder of an earlier one");
+    }
+    return method_name(json["method"] == "per_frame");
 }
 
 /// What report.json says of a run but its times: settings, memory, coverage, correspondence error, notes.

@@ -8,14 +8,14 @@
 
 #include <doctest/doctest.h>
 
-#include "support/analytic_denoiser.hpp"
+#include "support/attention_processor_laws.hpp"
 
 using namespace genrender;
 
 namespace {
 
-struct handle {};
-using least = attention_call_archetype<handle, float>;
+struct some_features {};
+using least = attention_call_archetype<some_features, float>;
 using host_call = host_attention_call<float, genrender::testing::identity_projections>;
 
 struct gives_nothing {
@@ -23,7 +23,7 @@ struct gives_nothing {
     void operator()(Call&) const {}
 };
 struct takes_nothing {
-    handle operator()() const;
+    some_features operator()() const;
 };
 struct changes_itself {
     int calls = 0;
@@ -44,17 +44,17 @@ TEST_SUITE("attention/attention_processor") {
         CHECK(attention_processor<attention_processor_archetype, least>);
         CHECK(attention_processor<plain_attention, least>);
         CHECK(attention_processor<plain_attention const, least>);
-        CHECK(attention_processor<recorder<handle>, least>);
-        CHECK(attention_processor<recorder<handle> const, least>);
-        CHECK(attention_processor<injector<handle, float>, least>);
-        CHECK(attention_processor<injector<handle, float> const, least>);
+        CHECK(attention_processor<recorder<some_features>, least>);
+        CHECK(attention_processor<recorder<some_features> const, least>);
+        CHECK(attention_processor<injector<some_features, float>, least>);
+        CHECK(attention_processor<injector<some_features, float> const, least>);
         CHECK(attention_processor<plain_attention, host_call>);
         CHECK(attention_processor<recorder<host_features<float>>, host_call>);
         CHECK(attention_processor<injector<host_features<float>, float>, host_call>);
     }
 
     TEST_CASE("features of another engine are refused") {
-        CHECK_FALSE(attention_processor<recorder<handle>, host_call>);
+        CHECK_FALSE(attention_processor<recorder<some_features>, host_call>);
         CHECK_FALSE(attention_processor<injector<host_features<double>, double>, host_call>);
         CHECK_FALSE(attention_processor<knows_one_engine, least>);
         CHECK(attention_processor<knows_one_engine, host_call>);
@@ -63,12 +63,39 @@ TEST_SUITE("attention/attention_processor") {
     TEST_CASE("what returns nothing or takes no call is no processor") {
         CHECK_FALSE(attention_processor<gives_nothing, least>);
         CHECK_FALSE(attention_processor<takes_nothing, least>);
-        CHECK_FALSE(attention_processor<handle, least>);
-        CHECK_FALSE(attention_processor<plain_attention, handle>);
+        CHECK_FALSE(attention_processor<some_features, least>);
+        CHECK_FALSE(attention_processor<plain_attention, some_features>);
     }
 
     TEST_CASE("a processor may change itself") {
         CHECK(attention_processor<changes_itself, host_call>);
         CHECK_FALSE(attention_processor<changes_itself const, host_call>);
+    }
+
+    TEST_CASE_TEMPLATE("plain attention and the recorder and the injector keep the laws", Real, float, double) {
+        using features = host_features<Real>;
+        std::vector<frame_index> const KF{{2}, {0}};
+        std::vector<frame_index> const frames{{0}, {1}, {2}};
+        std::uint32_t const sites = 3;
+
+        plain_attention const plain;
+        testing::check_attention_processor_laws<Real>(plain, frames, 5, 4, sites);
+
+        // Site 1 takes no part.
+        feature_bank<features> bank(sites, 2);
+        recorder<features> const record(bank, [](attention_place place) { return place.site.value != 1; });
+        testing::check_attention_processor_laws<Real>(record, KF, 5, 4, sites);
+
+        // Token t mixes both keyframes' tokens t, the last token nothing.
+        std::vector<std::uint32_t> const offsets{0, 2, 4, 6, 8, 8};
+        std::vector<std::uint32_t> const sources{0, 5, 1, 6, 2, 7, 3, 8};
+        std::vector<Real> const weights{Real(0.75), Real(0.25), Real(0.75), Real(0.25),
+                                        Real(0.75), Real(0.25), Real(0.75), Real(0.25)};
+        injector<features, Real> const inject(bank, KF,
+                                              [&](site_index, frame_index) {
+                                                  return sparse_rows<Real>{offsets, sources, weights};
+                                              },
+                                              {});
+        testing::check_attention_processor_laws<Real>(inject, frames, 5, 4, sites);
     }
 }

@@ -54,14 +54,16 @@ void check_denoiser_laws(Phi const& phi, typename Phi::real_type sigma) {
         REQUIRE(std::isfinite(together.data()[e]));
     }
 
-    SUBCASE("equal arguments give equal results") {
+    // Equal arguments give equal results.
+    {
         stack<Real, 4> again(extents);
         phi(again.view(), z.view(), sigma, frames, plain);
         for (std::size_t e = 0; e < z.size(); ++e) {
             REQUIRE(again.data()[e] == together.data()[e]);
         }
     }
-    SUBCASE("with plain attention a frame does not depend on the others of the stack") {
+    // With plain attention a frame does not depend on the others of the stack.
+    {
         for (std::uint32_t i = 0; i < 3; ++i) {
             stack<Real, 4> alone({1, extents[1], extents[2], extents[3]});
             phi(alone.view(), z.view().slice(i, 1), sigma, std::array{frame_index{i}}, plain);
@@ -70,7 +72,8 @@ void check_denoiser_laws(Phi const& phi, typename Phi::real_type sigma) {
             }
         }
     }
-    SUBCASE("every site is run once per branch with all frames at once") {
+    // Every site is run once per branch, with all frames at once.
+    {
         std::map<attention_place, std::size_t> calls;
         std::mutex mutex;
         counting_attention const counting{&calls, 3, &mutex};

@@ -15,13 +15,14 @@ namespace genrender {
 /// `processor(call)` | `Call::features_type` | F [frames, tokens, channels], the output of the module for all frames of
 ///                   |                       | the call, before the residual is added
 ///
-/// These the compiler cannot check, and a model owes them: F has the extents of `call.f()`; calls at different places,
-/// or for different frames, may run at the same time on several threads; the processor keeps no reference to the call.
-/// An engine owes the processor that it does not write into F, which a recorder keeps: the residual is added elsewhere.
-/// It does not require to be copied, to know a network, or to be called in any order of sites.
+/// These the compiler cannot check, and a model owes them (tests/support/attention_processor_laws.hpp): F has the
+/// extents of `call.f()`; calls at different places, or for different frames, may run at the same time on several
+/// threads; the processor keeps no reference to the call. An engine owes the processor that it does not write into F,
+/// which a recorder keeps: the residual is added elsewhere. It does not require to be copied, to know a network, or to
+/// be called in any order of sites.
 ///
 /// See also: plain_attention, recorder, injector and the baselines, which are models; attention_call, what it is given;
-/// feature_inputs, the same contract for engines whose graph is static.
+/// feature_io_processor, the same contract for engines whose graph is static.
 template <class Processor, class Call>
 concept attention_processor = attention_call<Call> && requires(Processor& processor, Call& call) {
     { processor(call) } -> std::convertible_to<typename Call::features_type>;

@@ -93,6 +93,9 @@ void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
         sources += block.K.extent(0);
     }
     require_value(sources > 0 || tokens == 0, "scaled_dot_product", "blocks", "empty", "at least one key");
+    if (tokens == 0) {
+        return; // Views of nothing may have no memory to point into.
+    }
 
     // Make rows contiguous where an engine's strides do not.
     stack<Real, 2> F_storage;
