@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -156,6 +157,33 @@ TEST_SUITE("pipeline/render") {
         CHECK(last.remaining_seconds == 0);
         CHECK(report.denoiser_seconds() > 0);
         CHECK(report.library_seconds() > 0);
+    }
+    TEST_CASE("the estimate runs out for every sampler and window") {
+        auto const phi = with_attention();
+        for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
+            for (auto const end : {0.0, 0.6, 1.0}) {
+                auto settings = few_steps();
+                settings.method = method;
+                settings.window_end = end;
+                render_report report;
+                progress last;
+                render(phi, to_uv_view(scene()), settings, report, [&](progress const& state) {
+                    CHECK(state.remaining_seconds >= 0);
+                    last = state;
+                    return true;
+                });
+                CHECK(last.remaining_seconds == 0);
+                CHECK(last.frames_done == 6);
+            }
+        }
+    }
+    TEST_CASE("frames to denoise are counted by hand") {
+        auto settings = few_steps(); // 4 steps, 3 keyframes
+        CHECK(frames_to_denoise(settings, 6) == 4 * (6 + 3));
+        settings.method = sampler::heun;
+        CHECK(frames_to_denoise(settings, 6) == 7 * (6 + 3));
+        settings.window_begin = 0.5; // Steps 2 and 3 have keyframes, each evaluated twice.
+        CHECK(frames_to_denoise(settings, 6) == 7 * 6 + 4 * 3);
     }
     TEST_CASE("the observer can end the run") {
         auto const phi = with_attention();

@@ -31,6 +31,22 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
     }
 }
 
+/// Number of frames that a run of `frames` frames gives to the denoiser in all its evaluations, keyframes counted anew in
+/// each step that has them.
+template <class Real>
+std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t frames) {
+    auto const keyframes = settings.keyframes.drawing == keyframe_drawing::fixed ? settings.keyframes.frames.size()
+                                                                                 : settings.keyframes.count;
+    std::size_t total = 0;
+    for (std::size_t step = 0; step < settings.steps; ++step) {
+        // Heun's second evaluation is at the level at which the next step begins.
+        auto const evaluations = settings.method == sampler::heun && step > 0 ? 2U : 1U;
+        auto const has_keyframes = is_in_window(step, settings.steps, settings.window_begin, settings.window_end);
+        total += evaluations * (frames + (has_keyframes ? keyframes : 0));
+    }
+    return total;
+}
+
 /// Renders an animation with a denoiser: z_0 [frames, channels, height, width], the clean latents of all frames, for
 /// the user's decoder. UV maps [frames, height, width] are of full resolution, a whole multiple of the denoiser's
 /// latent grid and feature grids; the denoiser owns prompt and depth. `make_map(grid)` compiles the correspondence map
@@ -73,10 +89,7 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
     report.add_seconds(0, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
     // for t = T, ..., 1: keyframes, features, blending, injection, normalisation: see sequence_denoiser
-    auto const keyframes = settings.keyframes.drawing == keyframe_drawing::fixed ? settings.keyframes.frames.size()
-                                                                                 : settings.keyframes.count;
-    progress_meter meter(settings.steps, evaluations(settings.method, settings.steps) * (N + keyframes),
-                         std::move(observer));
+    progress_meter meter(settings.steps, frames_to_denoise(settings, N), std::move(observer));
     sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
                               report);
     return sample(settings.method, D, std::move(z), sigmas, [&](std::size_t step, latents<Real>& z_next) {
