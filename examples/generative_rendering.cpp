@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,15 +33,13 @@ reference_network<float, threaded_loop> make_denoiser(render_options const& opti
             loop};
 }
 
-void run(render_options const& options, guidance_source const& source, threaded_loop const& loop,
-         stopwatch const& total) {
+void run(render_options const& options, guidance_source const& source, std::optional<earlier_run> const& earlier,
+         threaded_loop const& loop, stopwatch const& total) {
     auto const phi = make_denoiser(options, source, loop);
 
     render_report report;
-    stopwatch const rendering;
     auto const z =
         render(phi, to_uv_view(source.guidance.uv), options.settings, report, progress_line(options.is_quiet), loop);
-    auto const rendering_seconds = rendering.seconds();
 
     auto const images = decoded(z);
     std::vector<rgb8_image> frames;
@@ -48,13 +47,12 @@ void run(render_options const& options, guidance_source const& source, threaded_
         frames.push_back(rgb_picture(to_view(images)[i]));
     }
     write_pictures(options.out, source.guidance, frames);
-    if (!options.beside.empty()) {
-        write_comparison(options.out, options.beside, earlier_method(options.beside), frames,
-                         method_name(options.is_per_frame));
-    }
     auto json = report_of(options, source, report, images);
-    json["seconds"] = seconds_of(report, total.seconds(), rendering_seconds);
+    json["seconds"] = seconds_of(report, total.seconds());
     write_text(options.out / "report.json", json.dump(2) + "\n");
+    if (earlier) {
+        write_comparison(options.out, *earlier, frames, method_name(options.is_per_frame));
+    }
 }
 
 /// Prints a sentence and gives the exit code.
@@ -69,6 +67,7 @@ int main(int argc, char** argv) {
     stopwatch const total;
     render_options options;
     guidance_source source;
+    std::optional<earlier_run> earlier;
     threaded_loop loop;
     // Everything that can be wrong with the arguments shows before the first step.
     try {
@@ -76,13 +75,13 @@ int main(int argc, char** argv) {
         loop = threaded_loop(options.threads);
         prompt_rows(options.prompt);
         make_folder(options.out);
-        if (!options.beside.empty()) {
-            earlier_method(options.beside);
-        }
         source = load_guidance(options, loop);
         auto const frame_count = source.guidance.uv.frame_count();
         options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
         require_render_settings(options.settings, frame_count);
+        if (!options.beside.empty()) {
+            earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
+        }
         require_latent_grid(unet_config{}, {source.image.height / 2, source.image.width / 2});
     } catch (no_run const& none) {
         return none.exit_code;
@@ -95,7 +94,7 @@ int main(int argc, char** argv) {
         std::cerr << "note: " << note << "\n";
     }
     try {
-        run(options, source, loop, total);
+        run(options, source, earlier, loop, total);
     } catch (std::exception const& error) {
         return fail(1, error);
     }

@@ -11,6 +11,8 @@
 #include <genrender/guidance/uv_convention.hpp>
 #include <genrender/guidance/uv_report.hpp>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <string>
@@ -68,6 +70,12 @@ guidance_source load_guidance(render_options const& options, Loop const& loop) {
     auto const frames = options.frames.value_or(24);
     source.image = {options.size, options.size};
     grid_extents const map{detail::map_pixels * options.size, detail::map_pixels * options.size};
+    // Maps of 18 bytes a pixel; a machine that has not as much would be brought down by its own kindness.
+    auto const bytes =
+        static_cast<double>(frames) * static_cast<double>(map.height) * static_cast<double>(map.width) * 18;
+    auto const memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    require_value(!options.maps.empty() || bytes < memory / 2, "--size", "maps", std::to_string(bytes / 1e9) + " GB",
+                  "less than half of the machine's memory: fewer --frames or a smaller --size");
     if (!options.scene.empty()) {
         source.guidance = rasterize(scenes::make_scene(options.scene, frames), map, loop);
     } else if (!options.model.empty()) {

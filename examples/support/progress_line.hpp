@@ -36,9 +36,12 @@ inline std::string duration_text(double seconds) {
 }
 
 /// An observer that keeps one line up to date on a terminal, prints a line a step elsewhere and nothing if `is_quiet`.
-/// Ctrl-C ends the run in good order.
+/// Ctrl-C ends the run in good order, a second one at once.
 inline progress_observer progress_line(bool is_quiet) {
-    std::signal(SIGINT, [](int) { detail::was_interrupted() = true; });
+    std::signal(SIGINT, [](int) {
+        detail::was_interrupted() = true;
+        std::signal(SIGINT, SIG_DFL);
+    });
     auto const is_terminal = isatty(STDERR_FILENO) != 0;
     return [is_quiet, is_terminal](progress const& state) {
         auto const is_step_done = state.pass == render_pass::frames && state.frames_done == state.frames;

@@ -68,16 +68,20 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     auto const positive = CLI::Range(std::size_t{1}, std::size_t{1} << 20).description("");
     auto const one_of = [](auto names) { return CLI::IsMember(std::move(names)).description(""); };
     using names_type = std::vector<std::string>;
+    CLI::Validator const not_empty([](std::string& text) { return text.empty() ? "is empty, expected a path" : ""; },
+                                   "");
 
     auto* const input = app.add_option_group("Input", "what is rendered (one of the three)");
     input->add_option("--scene", options.scene, "built-in scene: " + detail::listed(scenes::names, ", "))
         ->check(one_of(names_type(scenes::names.begin(), scenes::names.end())))
         ->type_name("NAME");
     input->add_option("--model", options.model, "animated model file, of any format that assimp reads")
+        ->check(not_empty)
         ->type_name("FILE");
     input
         ->add_option("--maps", options.maps,
                      "folder of EXR files with UV, depth and object passes, as Blender writes them")
+        ->check(not_empty)
         ->type_name("DIR");
     input->require_option(1);
     app.add_option("--prompt", options.prompt,
@@ -85,9 +89,11 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->required();
     app.add_option("--out", options.out, "folder for frames, maps, animation, contact sheet and report")
         ->required()
+        ->check(not_empty)
         ->type_name("DIR");
     app.add_option("--beside", options.beside,
                    "folder of an earlier run, shown beside this one in comparison.png and .webp")
+        ->check(not_empty)
         ->type_name("DIR");
 
     std::size_t frames = 0;
@@ -145,8 +151,10 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
 
     app.add_option("--weights", options.weights,
                    "safetensors file of the reference network; random weights without one")
+        ->check(not_empty)
         ->type_name("FILE");
     app.add_option("--threads", options.threads, "0: as many as the machine has")
+        ->check(CLI::Range(0, 1024).description(""))
         ->capture_default_str()
         ->type_name("N");
     app.add_flag("--quiet", options.is_quiet, "no progress");
@@ -156,6 +164,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     try {
         app.parse(argc, argv);
         options.is_per_frame = method == "per_frame";
+        if (!(alpha >= 0 && alpha <= 1)) { // Not-a-number passes a range.
+            throw CLI::ValidationError("--alpha", "is not a number, expected 0 to 1");
+        }
         if (options.is_per_frame && ours->count_all() > 0) {
             throw CLI::ValidationError("--method", "per_frame has no keyframes, injection or normalisation to set");
         }

@@ -16,7 +16,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace genrender::examples {
@@ -42,12 +41,15 @@ inline std::string numbered_png(std::size_t frame) {
     return name.data();
 }
 
-/// Writes every picture into a new folder, one file each.
+/// Writes every picture into a folder, one file each, and removes higher numbers that an earlier run left there.
 inline void write_numbered(std::filesystem::path const& folder, std::vector<rgb8_image> const& pictures,
                            std::string const& prefix = "") {
     make_folder(folder);
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         write_png(folder / (prefix + numbered_png(i)), pictures[i]);
+    }
+    // A longer run before this one must not lend it frames.
+    for (auto i = pictures.size(); std::filesystem::remove(folder / (prefix + numbered_png(i))); ++i) {
     }
 }
 
@@ -70,24 +72,21 @@ inline void write_pictures(std::filesystem::path const& out, rendered_guidance c
     write_png(out / "contact_sheet.png", contact_sheet(frames, {.enlargement = std::max<std::size_t>(1, factor / 2)}));
 }
 
+/// Frames of an earlier run, and what it is called.
+struct earlier_run {
+    std::string name;
+    std::vector<rgb8_image> frames;
+};
+
 /// Writes comparison.png, one row of an earlier run's frames over one of this run's, and comparison.webp, both side by
-/// side. Throws file_error if the earlier frames cannot be read or are not alike.
-inline void write_comparison(std::filesystem::path const& out, std::filesystem::path const& earlier,
-                             std::string const& earlier_name, std::vector<rgb8_image> const& frames,
-                             std::string const& name) {
+/// side. Throws file_error if they cannot be written.
+inline void write_comparison(std::filesystem::path const& out, earlier_run const& earlier,
+                             std::vector<rgb8_image> const& frames, std::string const& name) {
     std::vector<rgb8_image> pairs;
-    std::vector<rgb8_image> before;
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        auto const path = earlier / "frames" / numbered_png(i);
-        before.push_back(read_png(path));
-        if (before.back().height != frames[i].height || before.back().width != frames[i].width) {
-            throw file_error(path.string() + ": the frame is " +
-                             extents_text({before.back().height, before.back().width}) + ", expected " +
-                             extents_text({frames[i].height, frames[i].width}));
-        }
-        std::array const both{before.back(), frames[i]};
+        std::array const both{earlier.frames[i], frames[i]};
         pairs.push_back(contact_sheet(
-            both, {.columns = 2, .enlargement = viewing_factor(frames[i].height), .labels = {earlier_name, name}}));
+            both, {.columns = 2, .enlargement = viewing_factor(frames[i].height), .labels = {earlier.name, name}}));
     }
     write_animation(out / "comparison.webp", pairs);
 
@@ -95,11 +94,11 @@ inline void write_comparison(std::filesystem::path const& out, std::filesystem::
     auto const columns = std::min<std::size_t>(8, frames.size());
     std::vector<rgb8_image> rows;
     std::vector<std::string> labels;
-    for (auto const* const run : {&std::as_const(before), &frames}) {
+    for (auto const* const run : {&earlier.frames, &frames}) {
         for (std::size_t c = 0; c < columns; ++c) {
             auto const frame = c * frames.size() / columns;
             rows.push_back((*run)[frame]);
-            labels.push_back((run == &before ? earlier_name : name) + " " + std::to_string(frame));
+            labels.push_back((run == &earlier.frames ? earlier.name : name) + " " + std::to_string(frame));
         }
     }
     write_png(out / "comparison.png",

@@ -4,6 +4,7 @@
 
 #include "guidance_source.hpp"
 #include "render_options.hpp"
+#include "render_output.hpp"
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/tensor.hpp>
@@ -35,26 +36,40 @@ private:
     clock::time_point start_ = clock::now();
 };
 
-/// Seconds by the clock on the wall: in total, in the denoiser, in the library, and in files, pictures and maps. The
-/// run measured its two parts in seconds of threads, which share the wall's seconds of rendering alike.
-inline nlohmann::ordered_json seconds_of(render_report const& report, double total, double rendering) {
-    auto const parts = report.denoiser_seconds() + report.library_seconds();
-    auto const library = parts > 0 ? rendering * report.library_seconds() / parts : rendering;
-    return {{"total", total}, {"denoiser", rendering - library}, {"library", library}, {"other", total - rendering}};
+/// Seconds by the clock on the wall: in total, in the denoiser (attention and mixing included), in the rest of the
+/// library, and in everything else: reading, rasterising, decoding and writing.
+inline nlohmann::ordered_json seconds_of(render_report const& report, double total) {
+    auto const denoiser = report.denoiser_seconds();
+    auto const library = report.library_seconds();
+    return {{"total", total}, {"denoiser", denoiser}, {"library", library}, {"other", total - denoiser - library}};
 }
 
 /// The name of a method for a picture's label.
 inline std::string method_name(bool is_per_frame) { return is_per_frame ? "per frame" : "genrender"; }
 
-/// The method of an earlier run in `folder`, by its report.json. Throws file_error if there is none or it says none.
-inline std::string earlier_method(std::filesystem::path const& folder) {
-    auto const path = folder / "report.json";
+/// The run in folder `earlier`, as far as a run of `frames` frames of `image` extents into `out` is compared with it. Throws
+/// file_error if it has no report or not these frames, value_error if it is `out` itself.
+inline earlier_run load_earlier_run(std::filesystem::path const& earlier, std::filesystem::path const& out,
+                                    std::size_t frames, grid_extents image) {
+    auto const path = earlier / "report.json";
     std::ifstream stream(path);
     auto const json = nlohmann::json::parse(stream, nullptr, false);
     if (!stream || !json.is_object() || !json.contains("method")) {
         throw file_error(path.string() + ": is no report of a run, expected the folder of an earlier one");
     }
-    return method_name(json["method"] == "per_frame");
+    require_value(!std::filesystem::equivalent(earlier, out), "--beside", "folder", earlier.string(),
+                  "another folder than --out");
+    earlier_run run{method_name(json["method"] == "per_frame"), {}};
+    for (std::size_t i = 0; i < frames; ++i) {
+        auto const frame_path = earlier / "frames" / numbered_png(i);
+        run.frames.push_back(read_png(frame_path));
+        if (run.frames.back().grid() != image) {
+            throw file_error(frame_path.string() + ": the frame is " +
+                             extents_text({run.frames.back().height, run.frames.back().width}) + ", expected " +
+                             extents_text({image.height, image.width}));
+        }
+    }
+    return run;
 }
 
 /// What report.json says of a run but its times: settings, memory, coverage, correspondence error, notes.

@@ -74,6 +74,18 @@ TEST_SUITE("blending/mix_rows") {
         mix_rows(F.view(), F_KF, {offsets, sources, weights}, 1);
         CHECK(F(0, 0) == 2);
     }
+    TEST_CASE("a plan for more keyframes than there are features of is refused by name") {
+        stack<float, 2> F({1, 3});
+        stack<float, 3> const F_KF({2, 1, 3});
+        std::vector<std::uint32_t> const offsets{0, 1};
+        std::vector<std::uint32_t> const sources{2};
+        std::vector<float> const weights{1};
+        CHECK_THROWS_WITH_AS(mix_rows(F.view(), F_KF, {offsets, sources, weights}, 1),
+                             "mix_rows: rows.sources is 2, expected a row of the features' keyframes and tokens",
+                             value_error);
+        stack<float, 3> const nothing({2, 0, 3});
+        CHECK_THROWS_AS(mix_rows(F.view(), nothing, {offsets, sources, weights}, 1), value_error);
+    }
     TEST_CASE("features that do not fit are refused by name") {
         stack<float, 2> F({2, 3});
         stack<float, 3> F_KF({1, 2, 4});

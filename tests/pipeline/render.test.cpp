@@ -82,6 +82,8 @@ TEST_SUITE("pipeline/render") {
         CHECK(difference(one, run(phi, settings, 2)) == 0);
         settings.frames_per_call = 4;
         CHECK(difference(one, run(phi, settings, 2)) == 0);
+        settings.frames_per_call = std::numeric_limits<std::size_t>::max();
+        CHECK(difference(one, run(phi, settings, 2)) == 0);
         settings.keyframes.seed = 1;
         CHECK(difference(one, run(phi, settings)) > 0);
         settings.keyframes.seed = 0;
@@ -233,7 +235,21 @@ TEST_SUITE("pipeline/render") {
         refuses([](auto& s) { s.frames_per_call = 0; },
                 "render: settings.frames_per_call is 0, expected at least one frame");
         refuses([](auto& s) { s.window_begin = 2; },
-                "render: settings.window_begin is 2.000000, expected 0 <= window_begin <= window_end <= 1");
+                "render: window of settings is [2.000000, 1.000000), expected 0 <= begin <= end <= 1");
+        refuses([](auto& s) { s.normalization.window_end = 7; },
+                "render: window of settings.normalization is [0.000000, 7.000000), expected 0 <= begin <= end <= 1");
+        refuses([](auto& s) { s.first_fill_share = -1; },
+                "render: settings.first_fill_share is -1.000000, expected a share in [0, 1]");
+        refuses([](auto& s) { s.layers = nullptr; }, "render: settings.layers is empty, expected a function");
+        refuses([](auto& s) { s.alpha = nullptr; }, "render: settings.alpha is empty, expected a function");
+        refuses([](auto& s) { s.alpha = [](std::size_t, attention_site const&) { return std::nan(""); }; },
+                "render: settings.alpha is nan, expected finite numbers");
+        auto broken = scene();
+        broken.coverage(0, 16, 16) = 1;
+        broken.uv(0, 16, 16, 1) = std::numeric_limits<float>::infinity();
+        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(broken), few_steps(), report),
+                             "render: UV of frame 0 at row 16 column 16 is inf, expected finite texture coordinates",
+                             value_error);
         uv_maps const none(0, {32, 32});
         CHECK_THROWS_WITH_AS(render(phi, to_uv_view(none), few_steps(), report),
                              "render: UV.frame_count() is 0, expected at least one frame", value_error);

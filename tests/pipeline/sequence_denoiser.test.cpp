@@ -56,6 +56,15 @@ struct small_run {
     }
 };
 
+/// A denoiser that forgets its processor.
+struct deaf : testing::analytic_denoiser<double> {
+    template <class Processor>
+    void operator()(strided_view<double, 4> x0, strided_view<double const, 4> z, double, std::span<frame_index const>,
+                    Processor&) const {
+        copy(x0, in_view<double, 4>(z));
+    }
+};
+
 template <class Real>
 double greatest_difference(latents<Real> const& a, Real const* b) {
     double worst = 0;
@@ -138,6 +147,18 @@ TEST_SUITE("pipeline/sequence_denoiser") {
         CHECK(is_in_window(0, 4, 0.0, 1.0));
         CHECK(!is_in_window(2, 4, 0.0, 0.5));
         CHECK(is_in_window(2, 4, 0.5, 1.0));
+    }
+    TEST_CASE("a denoiser that does not run its processor is refused by site and branch") {
+        small_run<double> run;
+        deaf phi;
+        phi.grid = run.phi.grid;
+        auto const z = run.noise();
+        CHECK_THROWS_WITH_AS(sequence_denoiser(phi, run.grids, to_view(std::as_const(run.background)),
+                                               std::span<double const>(run.sigmas), run.settings, run.loop, run.meter,
+                                               run.report)(z, 3),
+                             "sequence_denoiser: features of keyframes at site decoder.attn1 of branch 0 are missing, "
+                             "expected the denoiser to run its processor there",
+                             value_error);
     }
     TEST_CASE("estimates that are not finite end the run with a sentence") {
         small_run<double> run;

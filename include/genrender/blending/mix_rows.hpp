@@ -13,7 +13,8 @@ namespace genrender {
 
 /// Where rows cover token t: F[t] = (1 - alpha) F[t] + alpha * sum of weights[e] * F_KF[sources[e]]; elsewhere F[t]
 /// stays. F [tokens, channels]; F_KF [keyframes, tokens, channels], whose row k * tokens + t is source k * tokens + t.
-/// Any strides; rows of neighbouring channels are fastest. With alpha = 1 the former F is not read. Throws shape_error
+/// Any strides; rows of neighbouring channels are fastest. With alpha = 1 the former F is not read. Throws
+/// value_error for a source beyond F_KF, shape_error
 /// if the channels or the rows do not fit.
 template <class Real>
 void mix_rows(strided_view<Real, 2> F, in_view<Real, 3> F_KF, sparse_rows<std::type_identity_t<Real>> const& rows,
@@ -22,6 +23,12 @@ void mix_rows(strided_view<Real, 2> F, in_view<Real, 3> F_KF, sparse_rows<std::t
     auto const channels = F.extent(1);
     require_shape("mix_rows", "F_KF", F_KF, {F_KF.extent(0), F_KF.extent(1), channels});
     require_extents("mix_rows", "rows", std::array{rows.row_count()}, std::array{tokens});
+
+    auto const source_rows = F_KF.extent(0) * F_KF.extent(1);
+    for (auto const source : rows.sources) {
+        require_value(source < source_rows, "mix_rows", "rows.sources", source,
+                      "a row of the features' keyframes and tokens");
+    }
 
     auto const source_tokens = F_KF.extent(1);
     auto const step = F.stride(1);

@@ -31,7 +31,8 @@ struct progress {
     double remaining_seconds = 0; ///< estimate: what is left takes as long per frame as what was done
 };
 
-/// Called from one thread at a time after each call of the denoiser; returning false ends the run with `cancelled`.
+/// Called from one thread at a time after each call of the denoiser; returning false ends the run with `cancelled`, and it
+/// is not called again.
 using progress_observer = std::function<bool(progress const&)>;
 
 /// Counts the denoised frames of a run and tells the observer.
@@ -54,7 +55,8 @@ public:
         state_.elapsed_seconds = std::chrono::duration<double>(clock::now() - start_).count();
         auto const left = done_ < total_ ? static_cast<double>(total_ - done_) : 0.0;
         state_.remaining_seconds = done_ > 0 ? state_.elapsed_seconds / static_cast<double>(done_) * left : 0.0;
-        if (observer_ && !observer_(state_)) {
+        is_cancelled_ = is_cancelled_ || (observer_ && !observer_(state_));
+        if (is_cancelled_) {
             throw cancelled("render: cancelled by its observer in step " + std::to_string(state_.step + 1) + " of " +
                             std::to_string(steps_));
         }
@@ -65,6 +67,7 @@ private:
     std::size_t steps_;
     std::size_t total_;
     std::size_t done_ = 0;
+    bool is_cancelled_ = false;
     progress_observer observer_;
     clock::time_point start_;
     progress state_;

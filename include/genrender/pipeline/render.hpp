@@ -8,9 +8,11 @@
 #include <genrender/sampling/karras_schedule.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,11 +25,42 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
     require_value(settings.steps > 0, "render", "settings.steps", settings.steps, "at least one step");
     require_value(settings.frames_per_call > 0, "render", "settings.frames_per_call", settings.frames_per_call,
                   "at least one frame");
-    require_value(settings.window_begin >= 0 && settings.window_end <= 1 &&
-                      settings.window_begin <= settings.window_end,
-                  "render", "settings.window_begin", settings.window_begin, "0 <= window_begin <= window_end <= 1");
+    auto const require_window = [](char const* argument, Real begin, Real end) {
+        if (!(begin >= 0 && end <= 1 && begin <= end)) {
+            throw value_error(std::string("render: ") + argument + " is [" + std::to_string(begin) + ", " +
+                              std::to_string(end) + "), expected 0 <= begin <= end <= 1");
+        }
+    };
+    require_window("window of settings", settings.window_begin, settings.window_end);
+    require_window("window of settings.normalization", settings.normalization.window_begin,
+                   settings.normalization.window_end);
+    require_value(settings.first_fill_share >= 0 && settings.first_fill_share <= 1, "render",
+                  "settings.first_fill_share", settings.first_fill_share, "a share in [0, 1]");
+    require_value(settings.layers != nullptr, "render", "settings.layers", "empty", "a function");
+    require_value(settings.alpha != nullptr, "render", "settings.alpha", "empty", "a function");
+    evaluations(settings.method, settings.steps);
     if (settings.window_begin < settings.window_end) {
         draw_keyframes(settings.keyframes, frames, 0);
+    }
+}
+
+/// Throws value_error naming the first covered pixel whose UV is not finite.
+inline void require_finite_uv(uv_maps_view const& UV) {
+    for (std::uint32_t frame = 0; frame < UV.frame_count(); ++frame) {
+        for (std::uint32_t row = 0; row < UV.grid().height; ++row) {
+            for (std::uint32_t column = 0; column < UV.grid().width; ++column) {
+                if (!UV.is_covered({frame}, {row, column})) {
+                    continue;
+                }
+                for (auto const coordinate : UV.uv_at({frame}, {row, column})) {
+                    if (!std::isfinite(coordinate)) {
+                        throw value_error("render: UV of frame " + std::to_string(frame) + " at row " +
+                                          std::to_string(row) + " column " + std::to_string(column) + " is " +
+                                          std::to_string(coordinate) + ", expected finite texture coordinates");
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -41,8 +74,7 @@ std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t
     for (std::size_t step = 0; step < settings.steps; ++step) {
         // Heun's second evaluation is at the level at which the next step begins.
         auto const evaluations = settings.method == sampler::heun && step > 0 ? 2U : 1U;
-        auto const has_keyframes = is_in_window(step, settings.steps, settings.window_begin, settings.window_end);
-        total += evaluations * (frames + (has_keyframes ? keyframes : 0));
+        total += evaluations * (frames + (has_keyframes(settings, step) ? keyframes : 0));
     }
     return total;
 }
@@ -60,6 +92,7 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
     using Real = typename Phi::real_type;
     using map_type = decltype(make_map(grid_extents{}));
     require_render_settings(settings, UV.frame_count());
+    require_finite_uv(UV);
     auto const sigmas = karras_schedule<Real>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
     auto const N = UV.frame_count();
     auto const grid = grid_extents(phi.latent_grid());
@@ -80,9 +113,14 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
     correspondence_set<map_type> maps;
     for (auto const& site : phi.sites()) {
         for (std::uint32_t branch = 0; branch < phi.branches(); ++branch) {
-            if (settings.post_attention && settings.layers(site, branch)) {
-                maps.add(site.grid, make_map);
+            if (!settings.post_attention || !settings.layers(site, branch)) {
+                continue;
             }
+            for (std::size_t step = 0; step < settings.steps; ++step) {
+                auto const alpha = settings.alpha(step, site);
+                require_value(std::isfinite(alpha), "render", "settings.alpha", alpha, "finite numbers");
+            }
+            maps.add(site.grid, make_map);
         }
     }
 

@@ -30,7 +30,8 @@ public:
     std::map<grid_extents, coverage_count> const& coverage() const { return coverage_; }
     /// Frames that latent normalisation skipped in some step, for want of background.
     std::set<std::size_t> const& skipped_frames() const { return skipped_; }
-    /// Seconds in the denoiser, processors included, and in everything else; thread seconds in the parallel pass.
+    /// Seconds by the clock on the wall in the denoiser, the attention that processors ask of it included, and in the
+    /// rest of the library: compiling geometry, noise, keyframes, blend plans, normalisation.
     double denoiser_seconds() const { return denoiser_seconds_; }
     double library_seconds() const { return library_seconds_; }
 

@@ -35,7 +35,7 @@ struct render_settings {
     texel_grid_settings correspondence; ///< sec. 3.2
     adain_settings<Real> normalization; ///< sec. 3.4
 
-    /// Sites and branches that take part in the injection.
+    /// Sites and branches that take part in the injection. Like alpha it may be called from several threads at once.
     std::function<bool(attention_site const&, std::uint32_t branch)> layers = is_in_decoder;
     /// alpha of eq. 6, by step and site.
     std::function<Real(std::size_t step, attention_site const&)> alpha = [](std::size_t, attention_site const&) {

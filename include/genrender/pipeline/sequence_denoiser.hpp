@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <ranges>
 #include <span>
 #include <string>
@@ -48,6 +49,13 @@ bool is_in_window(std::size_t step, std::size_t steps, Real begin, std::type_ide
     return share >= begin && share < end;
 }
 
+/// Whether a step draws keyframes: it lies in the window, and something is injected.
+template <class Real>
+bool has_keyframes(render_settings<Real> const& settings, std::size_t step) {
+    return (settings.pre_attention || settings.post_attention) &&
+           is_in_window(step, settings.steps, settings.window_begin, settings.window_end);
+}
+
 /// D(z, sigma) of a whole animation: draws keyframes, records their features, blends them along the correspondences,
 /// denoises every frame with them and normalises the clean estimates. Any sampler drives it; it keeps nothing from one
 /// evaluation to the next, and what it draws depends on the seed and the noise level alone.
@@ -71,7 +79,7 @@ public:
     latents<real_type> operator()(latents<real_type> const& z, real_type sigma) const {
         auto const step = step_at(sigmas_, sigma);
         auto x0 = latents<real_type>::from_shape(z.shape());
-        if (is_in_window(step, settings_->steps, settings_->window_begin, settings_->window_end)) {
+        if (has_keyframes(*settings_, step)) {
             auto const KF = draw_keyframes(settings_->keyframes, z.shape()[0], step);
             auto const bank = record_keyframes(z, sigma, step, KF);
             inject_frames(x0, z, sigma, step, KF, bank);
@@ -127,8 +135,22 @@ private:
         (*phi_)(to_view(x0_KF), to_view(std::as_const(z_KF)), sigma, KF, record);
         auto const denoiser = seconds_since(begin);
         report_->add_seconds(denoiser, seconds_since(start) - denoiser);
+        require_recorded(bank);
         meter_->add(KF.size());
         return bank;
+    }
+
+    /// Refuses a denoiser that did not run the processor, or did not hand over what it asked for.
+    void require_recorded(feature_bank<features_type> const& bank) const {
+        for (std::uint32_t site = 0; site < std::ranges::size(phi_->sites()); ++site) {
+            for (std::uint32_t branch = 0; branch < phi_->branches(); ++branch) {
+                if (takes_part({{site}, branch}) && bank.find({{site}, branch}) == nullptr) {
+                    throw value_error("sequence_denoiser: features of keyframes at site " + phi_->sites()[site].name +
+                                      " of branch " + std::to_string(branch) +
+                                      " are missing, expected the denoiser to run its processor there");
+                }
+            }
+        }
     }
 
     /// z^i <- Phi(z^i, D^i, c, f_KF, F_bar^i) for every frame
@@ -176,8 +198,12 @@ private:
     void denoise_frames(latents<real_type>& x0, latents<real_type> const& z, real_type sigma, std::size_t step,
                         MakeProcessor const& make_processor) const {
         auto const count = z.shape()[0];
-        auto const stride = settings_->frames_per_call;
+        auto const stride = std::min(settings_->frames_per_call, count);
         meter_->begin(step, render_pass::frames, count);
+        auto const pass_start = clock::now();
+        std::mutex mutex;
+        double in_denoiser = 0; // Seconds of threads, which share the pass's seconds by the clock on the wall.
+        double outside = 0;
         (*loop_)((count + stride - 1) / stride, [&](std::size_t call) {
             auto const start = clock::now();
             auto const first = call * stride;
@@ -190,9 +216,16 @@ private:
             (*phi_)(to_view(x0).slice(first, frames.size()), to_view(z).slice(first, frames.size()), sigma, frames,
                     processor);
             auto const denoiser = seconds_since(begin);
-            report_->add_seconds(denoiser, seconds_since(start) - denoiser);
+            {
+                std::lock_guard const lock(mutex);
+                in_denoiser += denoiser;
+                outside += seconds_since(start) - denoiser;
+            }
             meter_->add(frames.size());
         });
+        auto const share = in_denoiser / std::max(in_denoiser + outside, 1e-12);
+        auto const seconds = seconds_since(pass_start);
+        report_->add_seconds(seconds * share, seconds * (1 - share));
     }
 
     /// Refuses estimates that would poison every later step.
