@@ -112,6 +112,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(positive)
         ->type_name("N");
     app.add_option("--seed", options.seed, "of noise, keyframes and random weights")
+        ->check(CLI::NonNegativeNumber.description(""))
         ->capture_default_str()
         ->type_name("S");
     std::string sampler_name = "euler";
