@@ -71,6 +71,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     CLI::Validator const not_empty([](std::string& text) { return text.empty() ? "is empty, expected a path" : ""; },
                                    "");
 
+    CLI::Validator const not_negative(
+        [](std::string& text) { return text.starts_with('-') ? "is " + text + ", expected 0 or more" : ""; }, "");
+
     auto* const input = app.add_option_group("Input", "what is rendered (one of the three)");
     input->add_option("--scene", options.scene, "built-in scene: " + detail::listed(scenes::names, ", "))
         ->check(one_of(names_type(scenes::names.begin(), scenes::names.end())))
@@ -112,7 +115,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(positive)
         ->type_name("N");
     app.add_option("--seed", options.seed, "of noise, keyframes and random weights")
-        ->check(CLI::NonNegativeNumber.description(""))
+        ->check(not_negative)
         ->capture_default_str()
         ->type_name("S");
     std::string sampler_name = "euler";
