@@ -47,8 +47,8 @@ inline nlohmann::ordered_json seconds_of(render_report const& report, double tot
 /// The name of a method for a picture's label.
 inline std::string method_name(bool is_per_frame) { return is_per_frame ? "per frame" : "genrender"; }
 
-/// The run in folder `earlier`, as far as a run of `frames` frames of `image` extents into `out` is compared with it. Throws
-/// file_error if it has no report or not these frames, value_error if it is `out` itself.
+/// The run in folder `earlier`, as far as a run of `frames` frames of `image` extents into `out` is compared with it.
+/// Throws file_error if it has no report or not these frames, value_error if it is `out` itself.
 inline earlier_run load_earlier_run(std::filesystem::path const& earlier, std::filesystem::path const& out,
                                     std::size_t frames, grid_extents image) {
     auto const path = earlier / "report.json";

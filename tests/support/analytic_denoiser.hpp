@@ -33,9 +33,8 @@ struct identity_projections {
 };
 
 /// D(z, sigma) = (1 - attention) E[clean given z] + attention F, where E is the posterior mean for clean ~ N(mean,
-/// spread^2) and F
-/// the output of one decoder site whose input is the posterior mean, a token a pixel. With attention = 0 the sampler's
-/// limit is known: z_0 = mean + (z_T - mean) spread / sqrt(spread^2 + sigma_T^2).
+/// spread^2) and F the output of one decoder site whose input is the posterior mean, a token a pixel. With attention =
+/// 0 the sampler's limit is known: z_0 = mean + (z_T - mean) spread / sqrt(spread^2 + sigma_T^2).
 template <class Real>
 struct analytic_denoiser {
     using real_type = Real;

@@ -25,10 +25,10 @@ public:
         return texture_resolution(T);
     }
 
-    /// T per object such that a token of `grid` spans about `texels_per_token` texels along each side: texels_per_token /
-    /// T is the median UV step between neighbouring map pixels of the object, one pair a cell of every frame, times the
-    /// token's width in pixels. An object's chart borders do not disturb the median. Throws value_error if the grid does not divide the maps or
-    /// texels_per_token is not above 0.
+    /// T per object such that a token of `grid` spans about `texels_per_token` texels along each side:
+    /// texels_per_token / T is the median UV step between neighbouring map pixels of the object, looked at once a cell
+    /// of every frame, times the token's width in pixels. An object's chart borders do not disturb the median. Throws
+    /// value_error if the grid does not divide the maps or texels_per_token is not above 0.
     static texture_resolution matched(uv_maps_view const& maps, grid_extents grid, double texels_per_token) {
         require_value(texels_per_token > 0, "texture_resolution", "texels_per_token", texels_per_token, "above 0");
         auto const cell = cell_extents("texture_resolution", maps.grid(), grid);

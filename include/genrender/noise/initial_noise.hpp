@@ -57,14 +57,14 @@ void initial_noise(strided_view<Real, 4> z, uv_maps_view const& maps, std::span<
                             : settings.T > 0                ? texture_resolution::same(settings.T)
                                                             : texture_resolution::matched(maps, grid, 1);
     noise_texture const z_UV{settings.seed};
+    auto const differs_by_frame =
+        settings.kind == noise_kind::independent ||
+        (settings.kind == noise_kind::uv && settings.background == background_noise::independent);
 
     loop(frames.size(), [&](std::size_t i) {
         for (std::uint32_t t = 0; t < grid.size(); ++t) {
             auto const sample =
                 settings.kind == noise_kind::uv ? representative_sample(maps, frames[i], grid, {t}) : std::nullopt;
-            auto const differs_by_frame =
-                settings.kind == noise_kind::independent ||
-                (settings.kind == noise_kind::uv && settings.background == background_noise::independent);
             for (std::uint32_t c = 0; c < z.extent(1); ++c) {
                 auto const value =
                     sample ? z_UV(texel_of(*sample, resolution), c)

@@ -48,9 +48,8 @@ struct adain_settings {
 };
 
 /// Normalises a sequence z [frames, channels, height, width] in place: each frame's statistics over its own
-/// `background`
-/// [frames, height, width] become those of frame 0 over its own. Returns the frames that were skipped for want of
-/// background (all of them if frame 0 has none). Throws shape_error if the mask does not fit.
+/// `background` [frames, height, width] become those of frame 0 over its own. Returns the frames that were skipped for
+/// want of background (all of them if frame 0 has none). Throws shape_error if the mask does not fit.
 template <class Real>
 std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view<std::uint8_t const, 3> background,
                                            adain_settings<std::type_identity_t<Real>> const& settings = {}) {

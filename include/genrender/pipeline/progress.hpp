@@ -31,8 +31,8 @@ struct progress {
     double remaining_seconds = 0; ///< estimate: what is left takes as long per frame as what was done
 };
 
-/// Called from one thread at a time after each call of the denoiser; returning false ends the run with `cancelled`, and it
-/// is not called again.
+/// Called from one thread at a time after each call of the denoiser; returning false ends the run with `cancelled`, and
+/// it is not called again.
 using progress_observer = std::function<bool(progress const&)>;
 
 /// Counts the denoised frames of a run and tells the observer.

@@ -64,8 +64,8 @@ inline void require_finite_uv(uv_maps_view const& UV) {
     }
 }
 
-/// Number of frames that a run of `frames` frames gives to the denoiser in all its evaluations, keyframes counted anew in
-/// each step that has them.
+/// Number of frames that a run of `frames` frames gives to the denoiser in all its evaluations, keyframes counted anew
+/// in each step that has them.
 template <class Real>
 std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t frames) {
     auto const keyframes = settings.keyframes.drawing == keyframe_drawing::fixed ? settings.keyframes.frames.size()
