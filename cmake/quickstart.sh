@@ -8,9 +8,11 @@ usage() {
 sh cmake/quickstart.sh WHAT
 
   demo      render an animation with the built-in network, and the same frame by frame   (build/demo_output)
+  evaluate  the paper's tables on the built-in network: every method, baseline and ablation (build/evaluation);
+            with --quick one prompt and one seed, with other options those of the program evaluate
   test      everything that continuous integration checks: g++, clang++ with sanitizers, headers, package
   bench     the benchmarks, compiled for this machine's processor
-  packages  install the Debian packages that demo, test and bench need, and do no more
+  packages  install the Debian packages that demo, evaluate, test and bench need, and do no more
 
 Packages that are missing are installed with apt-get; nothing is downloaded when all are there.
 TEXT
@@ -19,6 +21,7 @@ TEXT
 # What the library and its examples are built from.
 demo_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev
     libassimp-dev libbullet-dev libopenexr-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev"
+evaluate_packages="$demo_packages gnuplot-nox"
 bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libbenchmark-dev"
 # What its tests need besides.
 test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels"
@@ -105,6 +108,17 @@ run_tests() {
     say "All tests passed"
 }
 
+evaluate() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $evaluate_packages
+    workflow evaluate
+    say "Rendering and measuring"
+    build/evaluate/examples/evaluate --out build/evaluation "$@"
+    gnuplot -e "folder='build/evaluation'" examples/evaluation/consistency.gnuplot
+    say "Tables, contact sheets, slices over time and the plot"
+    ls build/evaluation
+}
+
 bench() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $bench_packages
@@ -118,6 +132,10 @@ bench() {
 cd "$(dirname "$0")/.."
 case ${1-} in
     demo) demo ;;
+    evaluate)
+        shift
+        evaluate "$@"
+        ;;
     test) run_tests ;;
     bench) bench ;;
     packages) # shellcheck disable=SC2086 # a list of words

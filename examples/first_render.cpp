@@ -37,7 +37,7 @@ int main() {
     try {
         auto const guidance = genrender::rasterize(genrender::scenes::camera_rotation(4), {128, 128});
         auto const hint = genrender::cell_means(genrender::sequence_inverse_depth(guidance.depth), {32, 32});
-        auto const network = genrender::reference_network<float>::seeded(to_view(hint), "marble", 7);
+        auto const network = genrender::reference_network<float>::seeded(to_view(hint), "camo", 7);
         auto const z = stylise(network, guidance.uv);
         return z.shape()[0] == 4 ? 0 : 1;
     } catch (std::exception const& error) {

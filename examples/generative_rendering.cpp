@@ -6,6 +6,8 @@
 #include "support/render_output.hpp"
 #include "support/run_report.hpp"
 
+#include <genrender/baselines/pix2video.hpp>
+#include <genrender/baselines/tokenflow.hpp>
 #include <genrender/models/reference_network.hpp>
 #include <genrender/models/reference_weights.hpp>
 #include <genrender/pipeline/render.hpp>
@@ -22,24 +24,38 @@ using namespace genrender::examples;
 
 namespace {
 
-/// The user's denoiser; here the reference network, told the prompt and the depth of the whole animation.
-reference_network<float, threaded_loop> make_denoiser(render_options const& options, guidance_source const& source,
-                                                      threaded_loop const& loop) {
-    unet_config const config;
-    auto weights = options.weights.empty() ? reference_weights<float>::seeded(options.seed)
-                                           : reference_weights<float>::from_file(options.weights.string());
-    auto const hint = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
-    return {config, weights.unet, weights.controlnet, weights.conditioning(config, to_view(hint), options.prompt),
-            loop};
+using network = reference_network<float, threaded_loop>;
+
+/// The user's denoiser; here the reference network with the weights of a folder, or with random ones.
+reference_weights<float> load_weights(render_options const& options) {
+    auto weights = options.weights == "random" ? reference_weights<float>::seeded(options.seed)
+                                               : reference_weights<float>::from_folder(options.weights);
+    require_value(weights.config.in_channels == 12, "--weights", "channels of the latents", weights.config.in_channels,
+                  "12, the Haar bands of a colour image: this program has no other decoder");
+    return weights;
 }
 
-void run(render_options const& options, guidance_source const& source, std::optional<earlier_run> const& earlier,
-         threaded_loop const& loop, stopwatch const& total) {
-    auto const phi = make_denoiser(options, source, loop);
+/// Latents of all frames by the method that the options name.
+latents<float> rendered(render_options const& options, network const& phi, uv_maps_view const& UV,
+                        render_report& report, threaded_loop const& loop) {
+    auto const by = [&](auto const& method) {
+        return render(method, phi, UV, options.settings, report, progress_line(options.is_quiet), loop);
+    };
+    switch (options.method) {
+    case render_method::pix2video: return by(pix2video{});
+    case render_method::tokenflow: return by(tokenflow{});
+    default: return by(generative_rendering{});
+    }
+}
+
+void run(render_options const& options, guidance_source const& source, reference_weights<float>& weights,
+         std::optional<earlier_run> const& earlier, threaded_loop const& loop, stopwatch const& total) {
+    // The denoiser is told the prompt and the depth of the whole animation.
+    auto const nearness = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
+    network const phi(weights, weights.conditioning(to_view(nearness), options.prompt), loop);
 
     render_report report;
-    auto const z =
-        render(phi, to_uv_view(source.guidance.uv), options.settings, report, progress_line(options.is_quiet), loop);
+    auto const z = rendered(options, phi, to_uv_view(source.guidance.uv), report, loop);
 
     auto const images = decoded(z);
     std::vector<rgb8_image> frames;
@@ -51,7 +67,8 @@ void run(render_options const& options, guidance_source const& source, std::opti
     json["seconds"] = seconds_of(report, total.seconds());
     write_text(options.out / "report.json", json.dump(2) + "\n");
     if (earlier) {
-        write_comparison(options.out, *earlier, frames, method_name(options.is_per_frame));
+        write_comparison(options.out, *earlier, frames,
+                         method_name(render_method_names[static_cast<std::size_t>(options.method)]));
     }
 }
 
@@ -68,12 +85,16 @@ int main(int argc, char** argv) {
     render_options options;
     guidance_source source;
     std::optional<earlier_run> earlier;
+    std::optional<reference_weights<float>> weights;
     threaded_loop loop;
     // Everything that can be wrong with the arguments shows before the first step.
     try {
         options = parse_render_options(argc, argv);
         loop = threaded_loop(options.threads);
-        prompt_rows(options.prompt);
+        weights = load_weights(options);
+        if (weights->vocabulary) {
+            prompt_rows(options.prompt, weights->vocabulary->words());
+        }
         make_folder(options.out);
         source = load_guidance(options, loop);
         auto const frame_count = source.guidance.uv.frame_count();
@@ -82,7 +103,7 @@ int main(int argc, char** argv) {
         if (!options.beside.empty()) {
             earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
         }
-        require_latent_grid(unet_config{}, {source.image.height / 2, source.image.width / 2});
+        require_latent_grid(weights->config, {source.image.height / 2, source.image.width / 2});
     } catch (no_run const& none) {
         return none.exit_code;
     } catch (std::invalid_argument const& error) {
@@ -94,7 +115,7 @@ int main(int argc, char** argv) {
         std::cerr << "note: " << note << "\n";
     }
     try {
-        run(options, source, earlier, loop, total);
+        run(options, source, *weights, earlier, loop, total);
     } catch (std::exception const& error) {
         return fail(1, error);
     }

@@ -96,7 +96,7 @@ int main() try {
     auto const UV = to_uv_view(maps);
 
     // Noise still comes from the UV maps; every feature resolution gets a map from `make_map`.
-    auto const network = reference_network<float>::seeded(to_view(nearness), "marble", 1, 1.0f);
+    auto const network = reference_network<float>::seeded(to_view(nearness), "camo", 1, 1.0f);
     render_settings<float> settings;
     settings.steps = 2;
     settings.keyframes.count = 2;

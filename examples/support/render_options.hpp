@@ -4,21 +4,32 @@
 
 #include "../scenes/scenes.hpp"
 
+#include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
 #include <genrender/models/prompt_vocabulary.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace genrender::examples {
+
+/// How the animation is rendered: the paper's method, or a baseline of its comparison.
+enum class render_method : std::uint8_t { generative_rendering, per_frame, pix2video, tokenflow };
+
+/// Their names on the command line and in reports, in this order.
+inline constexpr std::array<std::string_view, 4> render_method_names{"generative_rendering", "per_frame", "pix2video",
+                                                                     "tokenflow"};
 
 /// Everything a run is told. One of `scene`, `model` and `maps` is not empty.
 struct render_options {
@@ -28,13 +39,13 @@ struct render_options {
     std::string prompt;
     std::filesystem::path out;
     std::filesystem::path beside; ///< an earlier run to compare with
-    std::filesystem::path weights;
+    std::string weights = GENRENDER_REFERENCE_DENOISER "/weights"; ///< a folder, or `random`
     std::optional<std::size_t> frames;
     std::optional<std::size_t> keyframes;
     std::size_t size = 64;
     std::size_t threads = 0;
     std::uint64_t seed = 0;
-    bool is_per_frame = false;
+    render_method method = render_method::generative_rendering;
     bool is_quiet = false;
     render_settings<float> settings;
 };
@@ -125,17 +136,20 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->type_name("NAME");
 
     std::string method = "generative_rendering";
-    app.add_option("--method", method, "generative_rendering, or the baseline per_frame")
+    app.add_option("--method", method,
+                   "generative_rendering, or a baseline: per_frame, pix2video (frames attend to the first and the\n"
+                   "previous one), tokenflow (outputs of keyframes are carried along)")
         ->capture_default_str()
-        ->check(one_of(names_type{"generative_rendering", "per_frame"}))
+        ->check(one_of(names_type(render_method_names.begin(), render_method_names.end())))
         ->type_name("NAME");
     std::string noise;
     auto* const noise_option = app.add_option("--noise", noise,
                                               "initial noise: uv (moves with the surfaces), fixed (sticks to "
-                                              "the screen) or independent; uv, for per_frame independent")
+                                              "the screen) or independent; uv, for per_frame independent, for the other "
+                                              "baselines fixed")
                                    ->check(one_of(names_type{"uv", "fixed", "independent"}))
                                    ->type_name("KIND");
-    auto* const ours = app.add_option_group("Of the method", "not with --method per_frame");
+    auto* const ours = app.add_option_group("Of the method", "not with a baseline, but for --keyframes of tokenflow");
     float alpha = 0.7f;
     std::size_t keyframes = 0;
     auto* const keyframes_option =
@@ -154,9 +168,10 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     ours->add_flag("--no-adain", no_adain, "no latent normalisation");
 
     app.add_option("--weights", options.weights,
-                   "safetensors file of the reference network; random weights without one")
+                   "the denoiser, a folder in diffusers' layout (the trained reference denoiser), or the word\n"
+                   "random: the same network without training")
         ->check(not_empty)
-        ->type_name("FILE");
+        ->type_name("DIR");
     app.add_option("--threads", options.threads, "0: as many as the machine has")
         ->check(CLI::Range(0, 1024).description(""))
         ->capture_default_str()
@@ -167,12 +182,15 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         "Exit code: 0 done, 1 failed, 2 bad arguments.");
     try {
         app.parse(argc, argv);
-        options.is_per_frame = method == "per_frame";
+        auto const chosen = std::find(render_method_names.begin(), render_method_names.end(), method);
+        options.method = static_cast<render_method>(chosen - render_method_names.begin());
         if (!(alpha >= 0 && alpha <= 1)) { // Not-a-number passes a range.
             throw CLI::ValidationError("--alpha", "is not a number, expected 0 to 1");
         }
-        if (options.is_per_frame && ours->count_all() > 0) {
-            throw CLI::ValidationError("--method", "per_frame has no keyframes, injection or normalisation to set");
+        auto const foreign = ours->count_all() -
+                             (options.method == render_method::tokenflow ? keyframes_option->count() : std::size_t{0});
+        if (options.method != render_method::generative_rendering && foreign > 0) {
+            throw CLI::ValidationError("--method", method + " has no keyframes, injection or normalisation to set");
         }
     } catch (CLI::ParseError const& error) {
         throw no_run{app.exit(error) == 0 ? 0 : 2};
@@ -193,8 +211,10 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     settings.normalization.enabled = !no_adain;
     settings.noise.seed = options.seed;
     settings.keyframes.seed = options.seed;
-    if (options.is_per_frame) {
+    if (options.method == render_method::per_frame) {
         settings = per_frame(settings);
+    } else if (options.method != render_method::generative_rendering) {
+        settings = baseline_settings(settings);
     }
     if (noise_option->count() > 0) {
         settings.noise.kind = noise == "uv"      ? noise_kind::uv

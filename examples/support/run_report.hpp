@@ -9,6 +9,7 @@
 #include <genrender/core/error.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/evaluation/correspondence_error.hpp>
+#include <genrender/evaluation/pixel_correspondence.hpp>
 #include <genrender/pipeline/render_report.hpp>
 
 #include <nlohmann/json.hpp>
@@ -23,6 +24,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 namespace genrender::examples {
 
@@ -45,7 +47,9 @@ inline nlohmann::ordered_json seconds_of(render_report const& report, double tot
 }
 
 /// The name of a method for a picture's label.
-inline std::string method_name(bool is_per_frame) { return is_per_frame ? "per frame" : "genrender"; }
+inline std::string method_name(std::string_view method) {
+    return method == "generative_rendering" ? "genrender" : method == "per_frame" ? "per frame" : std::string(method);
+}
 
 /// The run in folder `earlier`, as far as a run of `frames` frames of `image` extents into `out` is compared with it.
 /// Throws file_error if it has no report or not these frames, value_error if it is `out` itself.
@@ -54,12 +58,13 @@ inline earlier_run load_earlier_run(std::filesystem::path const& earlier, std::f
     auto const path = earlier / "report.json";
     std::ifstream stream(path);
     auto const json = nlohmann::json::parse(stream, nullptr, false);
-    if (!stream || !json.is_object() || !json.contains("method")) {
+    if (!stream || !json.is_object() || !json.contains("method") ||
+        !json["method"].is_string()) {
         throw file_error(path.string() + ": is no report of a run, expected the folder of an earlier one");
     }
     require_value(!std::filesystem::equivalent(earlier, out), "--beside", "folder", earlier.string(),
                   "another folder than --out");
-    earlier_run run{method_name(json["method"] == "per_frame"), {}};
+    earlier_run run{method_name(json["method"].get<std::string>()), {}};
     for (std::size_t i = 0; i < frames; ++i) {
         auto const frame_path = earlier / "frames" / numbered_png(i);
         run.frames.push_back(read_png(frame_path));
@@ -79,13 +84,13 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     auto const& settings = options.settings;
     constexpr std::array<char const*, 3> noises{"uv", "fixed", "independent"};
     constexpr std::array<char const*, 3> samplers{"euler", "heun", "dpmpp_2m"};
-    json["method"] = options.is_per_frame ? "per_frame" : "generative_rendering";
+    json["method"] = render_method_names[static_cast<std::size_t>(options.method)];
     auto& told = json["settings"];
     told["input"] = !options.scene.empty()   ? options.scene
                     : !options.model.empty() ? options.model.string()
                                              : options.maps.string();
     told["prompt"] = options.prompt;
-    told["weights"] = options.weights.empty() ? "random" : options.weights.string();
+    told["weights"] = options.weights;
     told["frames"] = images.shape()[0];
     told["size"] = {source.image.height, source.image.width};
     told["map_size"] = {source.guidance.uv.grid().height, source.guidance.uv.grid().width};
@@ -93,8 +98,10 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["sampler"] = samplers[static_cast<std::size_t>(settings.method)];
     told["seed"] = options.seed;
     told["noise"] = noises[static_cast<std::size_t>(settings.noise.kind)];
-    if (!options.is_per_frame) {
+    if (options.method == render_method::generative_rendering || options.method == render_method::tokenflow) {
         told["keyframes"] = settings.keyframes.count;
+    }
+    if (options.method == render_method::generative_rendering) {
         told["alpha"] = settings.alpha(0, {});
         told["pre_attention"] = settings.pre_attention;
         told["post_attention"] = settings.post_attention;
@@ -107,7 +114,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     for (auto const& [grid, count] : report.coverage()) {
         json["coverage"][std::to_string(grid.height) + "x" + std::to_string(grid.width)] = count.share();
     }
-    texel_grid const pixels(to_uv_view(source.guidance.uv), source.image);
+    pixel_correspondence const pixels(to_uv_view(source.guidance.uv), source.image);
     json["correspondence_error"] = nlohmann::ordered_json::object();
     for (std::size_t const interval : {1U, 5U, 10U}) {
         auto const error = correspondence_error(to_view(images), pixels, interval);

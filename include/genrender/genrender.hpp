@@ -80,12 +80,33 @@
 #include <genrender/normalization/adain.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
 
+#include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/progress.hpp>
 #include <genrender/pipeline/render.hpp>
 #include <genrender/pipeline/render_report.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
+#include <genrender/pipeline/sequence_evaluation.hpp>
+#include <genrender/pipeline/sequence_method.hpp>
 
+#include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
+#include <genrender/baselines/pix2video.hpp>
+#include <genrender/baselines/previous_frame_attention.hpp>
+#include <genrender/baselines/propagation_plan.hpp>
+#include <genrender/baselines/token_propagation.hpp>
+#include <genrender/baselines/tokenflow.hpp>
 
+#include <genrender/evaluation/contrast.hpp>
 #include <genrender/evaluation/correspondence_error.hpp>
+#include <genrender/evaluation/embeddings.hpp>
+#include <genrender/evaluation/flicker.hpp>
+#include <genrender/evaluation/frame_consistency.hpp>
+#include <genrender/evaluation/image_text_embedder.hpp>
+#include <genrender/evaluation/mean_and_error.hpp>
+#include <genrender/evaluation/pixel_correspondence.hpp>
+#include <genrender/evaluation/pixel_objects.hpp>
+#include <genrender/evaluation/prompt_fidelity.hpp>
+#include <genrender/evaluation/recognition.hpp>
+#include <genrender/evaluation/sharpness.hpp>
+#include <genrender/evaluation/time_slice.hpp>

@@ -4,15 +4,19 @@
 
 #include <genrender/core/stack.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
+#include <genrender/evaluation/pixel_correspondence.hpp>
 
 #include <doctest/doctest.h>
 
 #include "support/random_scene.hpp"
 #include "support/random_stack.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -69,6 +73,29 @@ stack<Real, 4> painted(texel_grid const& map, std::size_t channels) {
             for (std::size_t c = 0; c < channels; ++c) {
                 images(i, c, t / grid.width, t % grid.width) =
                     point ? texture(point->slot, c) : std::numeric_limits<Real>::quiet_NaN();
+            }
+        }
+    }
+    return images;
+}
+
+/// Images of `grid` of one smooth texture, an average over the map pixels under each pixel; object 1 is brighter in
+/// odd frames by `blink`.
+template <class Real>
+stack<Real, 4> rendered(uv_maps_view const& maps, grid_extents grid, double blink) {
+    stack<Real, 4> images({maps.frame_count(), 1, grid.height, grid.width});
+    auto const cell = maps.grid().height / grid.height;
+    for (std::uint32_t i = 0; i < maps.frame_count(); ++i) {
+        for (std::uint32_t row = 0; row < maps.grid().height; ++row) {
+            for (std::uint32_t column = 0; column < maps.grid().width; ++column) {
+                auto const uv = maps.uv_at({i}, {row, column});
+                auto const is_bright = i % 2 == 1 && maps.object_at({i}, {row, column}).value == 1;
+                auto const colour =
+                    std::sin(12 * std::numbers::pi * double{uv[0]}) * std::sin(12 * std::numbers::pi * double{uv[1]}) +
+                    (is_bright ? blink : 0.0);
+                images(i, 0, row / cell, column / cell) +=
+                    static_cast<Real>(maps.is_covered({i}, {row, column}) ? colour : 0.0) /
+                    static_cast<Real>(cell * cell);
             }
         }
     }
@@ -154,6 +181,61 @@ TEST_SUITE("evaluation/correspondence_error") {
         texel_grid const map(to_uv_view(maps), {32, 32});
         auto const images = random_stack<double, 4>({3, 8, 32, 32}, 9);
         CHECK(*correspondence_error(images.view(), map, 1) == doctest::Approx(std::sqrt(2.0)).epsilon(0.05));
+    }
+
+    TEST_CASE("[GR sec. 4] several intervals come with the number of their pairs") {
+        sliding_strip const map;
+        auto const images = painted(map, 2);
+        auto const found = correspondence_errors(images.view(), map, std::array<std::size_t, 3>{2, 1, 3});
+        REQUIRE(found.size() == 3);
+        CHECK(found[0].interval == 2);
+        CHECK(found[0].pairs == 2);
+        CHECK(found[0].error == 0.0);
+        CHECK(found[1].pairs == 4);
+        CHECK(found[2].pairs == 0);
+        CHECK_FALSE(found[2].error.has_value());
+    }
+
+    TEST_CASE_TEMPLATE("[GR sec. 4] chosen objects alone", Real, float, double) {
+        auto const maps = random_scene(3, 4, {96, 96}, 3);
+        pixel_correspondence const map(to_uv_view(maps), {48, 48});
+        stack<Real, 4> images({4, 1, 48, 48});
+        for (std::uint32_t i = 0; i < 4; ++i) {
+            for (std::uint32_t p = 0; p < 48 * 48; ++p) {
+                auto const point = map.point_at({i}, {p});
+                images(i, 0, p / 48, p % 48) = static_cast<Real>(point && point->object.value == 1 ? 0.5 * i : 0.0);
+            }
+        }
+        constexpr std::array<std::size_t, 2> intervals{1, 2};
+        auto const all = correspondence_errors(images.view(), map, intervals);
+        auto const blinking =
+            correspondence_errors(images.view(), map, intervals, [](object_index o) { return o.value == 1; });
+        auto const others =
+            correspondence_errors(images.view(), map, intervals, [](object_index o) { return o.value != 1; });
+        for (std::size_t k = 0; k < 2; ++k) {
+            REQUIRE(blinking[k].pairs > 10);
+            CHECK(*blinking[k].error == doctest::Approx(0.5 * static_cast<double>(intervals[k])));
+            CHECK(*others[k].error == 0.0);
+            CHECK(all[k].pairs == blinking[k].pairs + others[k].pairs);
+            CHECK(*all[k].error ==
+                  doctest::Approx(*blinking[k].error * std::sqrt(static_cast<double>(blinking[k].pairs) /
+                                                                 static_cast<double>(all[k].pairs))));
+        }
+    }
+
+    TEST_CASE_TEMPLATE("[GR sec. 4] renders of a texture differ less where pairs are closer", Real, float, double) {
+        // The error of two perfect renders is the metric's own: the slope of the texture times the distance of pairs.
+        auto const maps = random_scene(0, 5, {128, 128}, 3);
+        auto const images = rendered<Real>(to_uv_view(maps), {32, 32}, 0);
+        auto const error = [&](auto const& map) { return *correspondence_error(images.view(), map, 2); };
+        auto const texels = error(texel_grid(to_uv_view(maps), {32, 32}));
+        auto const wide = error(pixel_correspondence(to_uv_view(maps), {32, 32}, 0.5));
+        auto const close = error(pixel_correspondence(to_uv_view(maps), {32, 32}, 0.25));
+        auto const closest = error(pixel_correspondence(to_uv_view(maps), {32, 32}, 0.1));
+        MESSAGE("texel_grid " << texels << ", reach 0.5: " << wide << ", 0.25: " << close << ", 0.1: " << closest);
+        CHECK(wide < texels);
+        CHECK(close < 0.7 * wide);
+        CHECK(closest < 0.7 * close);
     }
 
     TEST_CASE("images of any strides are measured alike") {

@@ -28,6 +28,16 @@ TEST_SUITE("models/linear") {
         check_close<Real, 2>(out.view(), plain_linear<Real>(in, weight, {}, 5));
     }
 
+    TEST_CASE_TEMPLATE("a 1x1 convolution is the same map of another shape", Real, float, double) {
+        auto source = weights<Real>::seeded(1, "test");
+        auto const layer = linear<Real>::of_1x1_convolution(source, "fc", 7, 5);
+        auto const in = random_stack<Real, 2>({11, 7}, 2);
+        stack<Real, 2> out({11, 5});
+        layer(out.view(), in);
+        auto const weight = source.take("fc.weight", {5, 7, 1, 1});
+        check_close<Real, 2>(out.view(), plain_linear<Real>(in, weight, source.take("fc.bias", {5}), 5));
+    }
+
     TEST_CASE("extents that do not fit are refused") {
         auto source = weights<float>::seeded(1, "test");
         linear<float> const layer(source, "fc", 3, 2);

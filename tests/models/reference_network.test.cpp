@@ -30,7 +30,7 @@ stack<float, 3> moving_box() {
 }
 
 template <class Real, class Loop = sequential_loop>
-reference_network<Real, Loop> small_network(char const* prompt = "marble", Real guidance = 2, Loop loop = {}) {
+reference_network<Real, Loop> small_network(char const* prompt = "stripes", Real guidance = 2, Loop loop = {}) {
     return reference_network<Real, Loop>::seeded(moving_box(), prompt, 1, guidance, loop, small_config());
 }
 
@@ -88,7 +88,7 @@ TEST_SUITE("models/reference_network") {
             }
         }
         for (std::size_t const threads : {1U, 2U, 3U}) {
-            auto const threaded = small_network<Real>("marble", 2, threaded_loop(threads));
+            auto const threaded = small_network<Real>("stripes", 2, threaded_loop(threads));
             CHECK(largest_difference(estimate_of(threaded, z, Real(3)), together) == 0);
         }
     }
@@ -152,9 +152,9 @@ TEST_SUITE("models/reference_network") {
                   base, estimate_of(small_network<float>(), random_stack<float, 4>({3, 4, 4, 6}, 3), 1.0f)) > 0.05);
         CHECK(largest_difference(base, estimate_of(small_network<float>("camo"), z, 1.0f)) > 0.05);
         auto const flat =
-            reference_network<float>::seeded(stack<float, 3>({3, 8, 12}), "marble", 1, 2, {}, small_config());
+            reference_network<float>::seeded(stack<float, 3>({3, 8, 12}), "stripes", 1, 2, {}, small_config());
         CHECK(largest_difference(base, estimate_of(flat, z, 1.0f)) > 0.05);
-        auto const other = reference_network<float>::seeded(moving_box(), "marble", 2, 2, {}, small_config());
+        auto const other = reference_network<float>::seeded(moving_box(), "stripes", 2, 2, {}, small_config());
         CHECK(largest_difference(base, estimate_of(other, z, 1.0f)) > 0.05);
     }
 
@@ -163,7 +163,7 @@ TEST_SUITE("models/reference_network") {
         auto config = small_config();
         auto const with = [&](prediction predicted) {
             config.prediction_type = predicted;
-            return estimate_of(reference_network<Real>::seeded(moving_box(), "rings", 1, 1, {}, config), z, Real(2));
+            return estimate_of(reference_network<Real>::seeded(moving_box(), "checker", 1, 1, {}, config), z, Real(2));
         };
         auto const F = with(prediction::clean);
         auto const velocity = with(prediction::velocity);
@@ -183,6 +183,35 @@ TEST_SUITE("models/reference_network") {
         auto const count = unet_weights.parameter_count() + control_weights.parameter_count();
         CHECK(count > 1'000'000);
         CHECK(count <= 2'000'000);
+    }
+
+    TEST_CASE("the network of a folder is told of time and noise as its scheduler says") {
+        auto config = small_config();
+        auto const z = random_stack<float, 4>({3, 4, 4, 6}, 2);
+        auto const of_steps = [&](std::size_t steps) {
+            config.num_train_timesteps = steps;
+            return estimate_of(reference_network<float>::seeded(moving_box(), "dots", 1, 1, {}, config), z, 1.0f);
+        };
+        auto const base = of_steps(1000);
+        CHECK(largest_difference(base, of_steps(100)) > 1e-3);
+        config.beta_end = 0.02;
+        CHECK(largest_difference(base, of_steps(1000)) > 1e-3);
+        config.beta_end = 2;
+        CHECK_THROWS_AS(of_steps(1000), value_error);
+    }
+
+    TEST_CASE_TEMPLATE("a folder gives the network that was saved to it", Real, float, double) {
+        temporary_file const folder("network");
+        auto const z = random_stack<Real, 4>({3, 4, 4, 6}, 2);
+        auto source = reference_weights<Real>::seeded(5, small_config());
+        auto const expected =
+            estimate_of(reference_network<Real>(source, source.conditioning(moving_box(), "red dots", 3)), z, Real(2));
+        source.save(folder.path());
+        auto const network =
+            reference_network<Real, threaded_loop>::from_folder(folder.path(), moving_box(), "red dots", 3);
+        CHECK(network.config().prediction_type == prediction::clean);
+        CHECK(largest_difference(expected, estimate_of(network, z, Real(2))) == 0);
+        CHECK_THROWS_AS(reference_network<Real>::from_folder(folder.path(), moving_box(), "marble"), value_error);
     }
 
     TEST_CASE("what does not fit is refused by name") {
@@ -211,10 +240,10 @@ TEST_SUITE("models/reference_network") {
             (reference_network<float>::seeded(stack<float, 3>({0, 8, 8}), "", 1, 2, {}, small_config())),
             "reference_network: frames of hint is 0, expected at least 1", value_error);
 
-        auto all = reference_weights<float>::seeded(1);
-        auto conditioning = all.conditioning(small_config(), moving_box(), "");
+        auto all = reference_weights<float>::seeded(1, small_config());
+        auto conditioning = all.conditioning(moving_box(), "");
         conditioning.prompt = stack<float, 2>({2, 7});
-        CHECK_THROWS_WITH_AS((reference_network<float>(small_config(), all.unet, all.controlnet, conditioning)),
+        CHECK_THROWS_WITH_AS((reference_network<float>(all, conditioning)),
                              "reference_network: prompt is [2, 7], expected [2, 6]", shape_error);
     }
 }

@@ -35,7 +35,9 @@ inline unet_config small_config() {
     config.attention_head_dim = {2, 3};
     config.cross_attention_dim = 6;
     config.norm_num_groups = 4;
+    config.conditioning_channels = 3;
     config.conditioning_embedding_out_channels = {3, 5};
+    config.prediction_type = prediction::clean;
     return config;
 }
 
@@ -133,18 +135,19 @@ stack<Real, 2> plain_conv2d(in_view<Real, 2> in, grid_extents grid, std::vector<
     return out;
 }
 
-/// The name of a file that is removed with the object.
+/// The name of a file or folder that is removed with the object.
 class temporary_file {
 public:
-    explicit temporary_file(std::string const& name)
-        : path_(
-              (std::filesystem::temp_directory_path() / (std::to_string(::getpid()) + "-genrender-" + name)).string()) {
+    explicit temporary_file(std::string const& name) {
+        static std::size_t count = 0;
+        auto const unique = std::to_string(::getpid()) + "-genrender-" + std::to_string(count++) + "-" + name;
+        path_ = (std::filesystem::temp_directory_path() / unique).string();
     }
     temporary_file(temporary_file const&) = delete;
     temporary_file& operator=(temporary_file const&) = delete;
     ~temporary_file() {
         std::error_code ignored;
-        std::filesystem::remove(path_, ignored);
+        std::filesystem::remove_all(path_, ignored);
     }
     std::string const& path() const { return path_; }
 

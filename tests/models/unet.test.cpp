@@ -3,9 +3,11 @@
 #include <genrender/models/unet.hpp>
 
 #include "golden.hpp"
+#include "golden_network.hpp"
 #include "small_networks.hpp"
 
 #include <genrender/models/controlnet.hpp>
+#include <genrender/models/diffusers_folder.hpp>
 
 #include <doctest/doctest.h>
 
@@ -16,104 +18,67 @@ using namespace genrender::testing;
 
 namespace {
 
-/// Numbers in [-1, 1): the scrambled sum (Steele et al. 2014, splitmix64) of a hash of the name and the index.
-std::vector<float> golden_values(std::string const& name, std::size_t count) {
-    std::uint64_t begin = 0xCBF29CE484222325U;
-    for (auto const letter : name) {
-        begin = (begin ^ static_cast<unsigned char>(letter)) * 0x100000001B3U;
+/// Largest difference from what diffusers computed, as a share of its output's range.
+template <class Real>
+double difference_share(feature_maps<Real> output, golden_output const& golden) {
+    auto const found = output.channels_first();
+    auto const [frames, channels, height, width] = found.extents();
+    auto const& expected = std::is_same_v<Real, float> ? golden.single : golden.precise;
+    double largest = 0;
+    for (std::size_t n = 0; n < expected.size(); ++n) {
+        auto const i = n * golden.step;
+        auto const value = found(0, i / (height * width), i / width % height, i % width);
+        largest = std::max(largest, std::abs(static_cast<double>(value) - expected[n]));
     }
-    std::vector<float> values(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        auto x = begin + i * 0x9E3779B97F4A7C15U;
-        x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
-        x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
-        x ^= x >> 31;
-        values[i] = static_cast<float>(x >> 40) * 0x1p-23f - 1;
-    }
-    return values;
-}
-
-/// Writes a file with every tensor that a network takes, filled as make_golden.py fills them.
-template <class Network>
-void write_golden_weights(std::string const& path, unet_config const& config, std::string const& prefix) {
-    auto shapes = weights<float>::seeded(1, "");
-    site_list sites({8, 12});
-    Network const network(config, shapes, sites);
-    std::map<std::string, std::vector<float>> values;
-    std::map<std::string, safetensors_source> sources;
-    for (auto const& [name, shape] : shapes.taken()) {
-        std::size_t count = 1;
-        for (auto const extent : shape) {
-            count *= extent;
-        }
-        auto& x = values[name] = golden_values(prefix + name, count);
-        auto const fan_in = static_cast<double>(count / shape[0]);
-        auto const scale = static_cast<float>(std::exp2(std::floor(std::log2(std::sqrt(3 / fan_in)))));
-        for (auto& value : x) {
-            value = shape.size() > 1 ? scale * value : 0.25f * value + (name.ends_with("weight") ? 1.0f : 0.0f);
-        }
-        sources[name] = {shape, x};
-    }
-    write_safetensors(path, sources);
-}
-
-unet_config golden_config() {
-    unet_config config;
-    config.in_channels = config.out_channels = 4;
-    config.block_out_channels = {8, 12, 16};
-    config.level_has_attention = {true, true, false};
-    config.layers_per_block = 2;
-    config.attention_head_dim = {2, 3, 4};
-    config.cross_attention_dim = 6;
-    config.norm_num_groups = 4;
-    config.conditioning_embedding_out_channels = {4, 6};
-    return config;
-}
-
-template <class Real, std::size_t Rank>
-stack<Real, Rank> golden_stack(std::string const& name, std::array<std::size_t, Rank> const& extents) {
-    stack<Real, Rank> result(extents);
-    auto const values = golden_values(name, result.size());
-    std::copy(values.begin(), values.end(), result.data());
-    return result;
+    return largest / golden.range;
 }
 
 } // namespace
 
 TEST_SUITE("models/unet") {
     TEST_CASE_TEMPLATE("outputs equal those of diffusers with and without the ControlNet", Real, float, double) {
-        temporary_file const unet_file("golden-unet.safetensors");
-        temporary_file const control_file("golden-control.safetensors");
-        auto const config = golden_config();
-        write_golden_weights<unet<float>>(unet_file.path(), config, "unet.");
-        write_golden_weights<controlnet<float>>(control_file.path(), config, "controlnet.");
-        auto unet_weights = weights<Real>::from_file(unet_file.path());
-        auto control_weights = weights<Real>::from_file(control_file.path());
-        site_list sites({8, 12});
-        controlnet<Real> const control(config, control_weights, sites);
-        unet<Real> const network(config, unet_weights, sites);
+        auto const bound = std::is_same_v<Real, float> ? 1e-5 : 1e-12;
+        for (std::size_t c = 0; c < golden_cases.size(); ++c) {
+            auto const& golden = golden_cases[c];
+            auto const name = std::string(golden.name);
+            CAPTURE(name);
+            temporary_file const folder("golden");
+            write_golden_folder(folder.path(), golden, golden_configs()[c]);
+            diffusers_folder const files(folder.path());
+            auto const config = files.config();
+            auto unet_weights = files.template unet<Real>();
+            auto control_weights = files.template controlnet<Real>();
+            site_list sites(golden.grid);
+            controlnet<Real> const control(config, control_weights, sites);
+            unet<Real> const network(config, unet_weights, sites);
 
-        std::array const frames{frame_index{0}};
-        auto const prompt = golden_stack<Real, 2>("prompt", {5, 6});
-        plain_attention const plain;
-        sequential_loop const loop;
-        forward_pass<Real, plain_attention const, sequential_loop> pass{frames, 0, prompt.view(), &plain, &loop};
-        feature_maps<Real> z(1, {8, 12}, 4);
-        feature_maps<Real> hint(1, {16, 24}, 3);
-        copy(z.channels_first(), in_view<Real, 4>(golden_stack<Real, 4>("z", {1, 4, 8, 12}).view()));
-        copy(hint.channels_first(), in_view<Real, 4>(golden_stack<Real, 4>("hint", {1, 3, 16, 24}).view()));
-        auto const check = [](feature_maps<Real> output, auto const& expected) {
-            auto const view = output.channels_first();
-            for (std::size_t n = 0; n < expected.size(); ++n) {
-                // diffusers makes the sinusoids of time in single precision whatever the rest is.
-                CHECK(static_cast<double>(view(0, n / 8, n % 8, 0)) ==
-                      doctest::Approx(expected[n]).epsilon(std::is_same_v<Real, float> ? 1e-4 : 5e-6));
-            }
-        };
-        check(network(pass, z, Real(417.5)), golden::unet_output);
-        auto const embedded = control.embed(hint);
-        auto const added = control(pass, z, Real(417.5), {&embedded}, Real(0.75));
-        check(network(pass, z, Real(417.5), &added), golden::controlled_output);
+            auto const scale = config.hint_scale();
+            std::array const frames{frame_index{0}};
+            auto const prompt = golden_stack<Real, 2>(name + ".prompt", {golden.tokens, config.cross_attention_dim});
+            plain_attention const plain;
+            sequential_loop const loop;
+            forward_pass<Real, plain_attention const, sequential_loop> pass{frames, 0, prompt.view(), &plain, &loop};
+            auto const input = [](std::string const& of, grid_extents grid, std::size_t channels) {
+                feature_maps<Real> maps(1, grid, channels);
+                auto const values = golden_stack<Real, 4>(of, {1, channels, grid.height, grid.width});
+                copy(maps.channels_first(), in_view<Real, 4>(values.view()));
+                return maps;
+            };
+            auto const z = input(name + ".z", golden.grid, config.in_channels);
+            auto const hint = input(name + ".hint", {scale * golden.grid.height, scale * golden.grid.width},
+                                    config.conditioning_channels);
+            auto const t = static_cast<Real>(golden.t);
+            CHECK(difference_share(network(pass, z, t), golden.alone) <= bound);
+            auto const embedded = control.embed(hint);
+            auto const added = control(pass, z, t, {&embedded}, static_cast<Real>(golden.scale));
+            CHECK(difference_share(network(pass, z, t, &added), golden.controlled) <= bound);
+        }
+    }
+
+    TEST_CASE("the ControlNet of a golden network is heard") {
+        for (auto const& golden : golden_cases) {
+            CHECK(std::abs(golden.alone.precise[0] - golden.controlled.precise[0]) > 1e-3 * golden.alone.range);
+        }
     }
 
     TEST_CASE("tensors that are missing or misshapen or left over are named") {

@@ -12,7 +12,7 @@ TEST_SUITE("models/unet_config") {
         CHECK_NOTHROW(require_config(config));
         CHECK_NOTHROW(require_latent_grid(config, {32, 32}));
         CHECK(config.time_channels() == 128);
-        CHECK(config.hint_scale() == 2);
+        CHECK(config.hint_scale() == 1);
         CHECK(config.grid_divisor() == 4);
     }
 
@@ -23,7 +23,7 @@ TEST_SUITE("models/unet_config") {
             CHECK_THROWS_WITH_AS(require_config(config), text, value_error);
         };
         check([](auto& c) { c.block_out_channels = {}; },
-              "unet_config: block_out_channels.size() is 0, expected at least 1");
+              "unet_config: block_out_channels.size() is 0, expected 1 to 16");
         check([](auto& c) { c.level_has_attention = {true}; },
               "unet_config: level_has_attention.size() is 1, expected one entry for each of block_out_channels");
         check(
@@ -40,7 +40,10 @@ TEST_SUITE("models/unet_config") {
               "unet_config: block_out_channels is 32, expected multiples of norm_num_groups");
         check([](auto& c) { c.norm_num_groups = 0; }, "unet_config: a count is 0, expected above 0");
         check([](auto& c) { c.conditioning_embedding_out_channels = {}; },
-              "unet_config: conditioning_embedding_out_channels.size() is 0, expected at least 1");
+              "unet_config: conditioning_embedding_out_channels.size() is 0, expected 1 to 16");
+        check([](auto& c) { c.conditioning_embedding_out_channels.assign(17, 4); },
+              "unet_config: conditioning_embedding_out_channels.size() is 17, expected 1 to 16");
+        check([](auto& c) { c.transformer_layers_per_block = 0; }, "unet_config: a count is 0, expected above 0");
         check([](auto& c) { c.block_out_channels[0] = 3, c.norm_num_groups = 1; },
               "unet_config: block_out_channels is 3, expected an even number for the sines and cosines of time");
     }

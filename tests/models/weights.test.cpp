@@ -49,9 +49,31 @@ TEST_SUITE("models/weights") {
         CHECK_THROWS_WITH_AS(store.require_all_taken(),
                              text("2 tensors have no place in the network: x.a, y.c, expected none").c_str(),
                              file_error);
-        auto part = weights<float>::from_file(file.path(), "x.");
-        CHECK(part.take("a", {1}) == one);
-        CHECK_THROWS_WITH_AS(part.require_all_taken(),
-                             text("1 tensors have no place in the network: x.b, expected none").c_str(), file_error);
+    }
+
+    TEST_CASE_TEMPLATE("the shards of a network are one store", Real, float, double) {
+        temporary_file const first("first.safetensors");
+        temporary_file const second("second.safetensors");
+        std::vector<float> const one{1.0f};
+        std::vector<float> const two{2.0f};
+        write_safetensors(first.path(), {{"a", {{1}, one}}, {"c", {{1}, two}}});
+        write_safetensors(second.path(), {{"b", {{1}, two}}});
+        auto store = weights<Real>::from_files({first.path(), second.path()});
+        CHECK(store.take("b", {1}) == std::vector<Real>{2});
+        CHECK(store.take("a", {1}) == std::vector<Real>{1});
+        CHECK_THROWS_WITH_AS(store.take("b", {2}), (second.path() + ": tensor b is [1], expected [2]").c_str(),
+                             file_error);
+        CHECK_THROWS_WITH_AS(store.take("d", {1}),
+                             (first.path() + ": there is no tensor d, expected one of shape [1]").c_str(), file_error);
+        CHECK_THROWS_WITH_AS(store.require_all_taken(),
+                             (first.path() + ": 1 tensors have no place in the network: c, expected none").c_str(),
+                             file_error);
+        CHECK_THROWS_WITH_AS(weights<Real>::from_files({}), "weights: paths is empty, expected at least one",
+                             value_error);
+        write_safetensors(second.path(), {{"a", {{1}, two}}});
+        CHECK_THROWS_WITH_AS(
+            weights<Real>::from_files({first.path(), second.path()}),
+            (second.path() + ": tensor a is in " + first.path() + " too, expected each tensor once").c_str(),
+            file_error);
     }
 }

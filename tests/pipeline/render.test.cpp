@@ -14,6 +14,7 @@
 #include <initializer_list>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace genrender;
@@ -118,6 +119,37 @@ TEST_SUITE("pipeline/render") {
         CHECK(difference(full, changed([](auto& s) { s.correspondence.T = 2; })) > 1e-6);
         CHECK(difference(full, changed([](auto& s) { s.noise.T = 2; })) > 1e-3);
         CHECK(difference(full, changed([](auto& s) { s.keyframes.drawing = keyframe_drawing::stratified; })) > 1e-9);
+    }
+    TEST_CASE("[GR sec. 4: Ablation studies] each ablation is one setting away from the full method") {
+        auto const phi = with_attention();
+        auto const full = run(phi, few_steps());
+        using settings_type = render_settings<double>;
+        std::vector<std::pair<char const*, void (*)(settings_type&)>> const ablations{
+            {"no pre-attention", [](settings_type& s) { s.pre_attention = false; }},
+            {"no post-attention", [](settings_type& s) { s.post_attention = false; }},
+            {"fixed noise", [](settings_type& s) { s.noise.kind = noise_kind::fixed; }},
+            {"independent noise", [](settings_type& s) { s.noise.kind = noise_kind::independent; }},
+            {"no latent normalisation", [](settings_type& s) { s.normalization.enabled = false; }}};
+        std::vector<latents<double>> results{full};
+        for (auto const& ablation : ablations) {
+            CAPTURE(ablation.first);
+            auto settings = few_steps();
+            ablation.second(settings);
+            results.push_back(run(phi, settings));
+            for (std::size_t other = 0; other + 1 < results.size(); ++other) {
+                CHECK(difference(results.back(), results[other]) > 1e-6);
+            }
+        }
+    }
+    TEST_CASE("the default method may be named") {
+        auto const phi = with_attention();
+        render_report report;
+        auto const z = render(generative_rendering{}, phi, to_uv_view(scene()), few_steps(), report);
+        CHECK(difference(z, run(phi, few_steps())) == 0);
+        auto const make_map = [](grid_extents grid) { return texel_grid(to_uv_view(scene()), grid); };
+        CHECK(difference(z, render(generative_rendering{}, phi, to_uv_view(scene()), make_map, few_steps(), report)) ==
+              0);
+        CHECK(difference(z, render(phi, to_uv_view(scene()), make_map, few_steps(), report)) == 0);
     }
     TEST_CASE(
         "UV noise alone makes corresponding pixels of the analytic denoiser agree better than independent noise") {

@@ -20,6 +20,13 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(settings.keeps_own_copy);
         CHECK(!settings.normalization.on_noisy_latents);
     }
+    TEST_CASE("a window holds its first step and not its last") {
+        CHECK(is_in_window(0, 4, 0.0, 1.0));
+        CHECK(is_in_window(3, 4, 0.0, 1.0));
+        CHECK(!is_in_window(2, 4, 0.0, 0.5));
+        CHECK(is_in_window(2, 4, 0.5, 1.0));
+        CHECK(!is_in_window(0, 4, 0.0, 0.0));
+    }
     TEST_CASE("by default the decoder of the denoising network takes part and a ControlNet does not") {
         attention_site site;
         CHECK(is_in_decoder(site, 0));

@@ -144,9 +144,6 @@ TEST_SUITE("pipeline/sequence_denoiser") {
         CHECK(step_at(all, 1) == 2);
         CHECK(step_at(all, 0.1) == 2);
         CHECK(step_at(all, 100) == 0);
-        CHECK(is_in_window(0, 4, 0.0, 1.0));
-        CHECK(!is_in_window(2, 4, 0.0, 0.5));
-        CHECK(is_in_window(2, 4, 0.5, 1.0));
     }
     TEST_CASE("a denoiser that does not run its processor is refused by site and branch") {
         small_run<double> run;

@@ -11,7 +11,15 @@
 namespace genrender {
 
 /// Which sequence of random numbers: values of different streams are independent for the same seed and address.
-enum class random_stream : std::uint32_t { texture_noise = 1, background_noise, frame_noise, keyframes, weights, test };
+enum class random_stream : std::uint32_t {
+    texture_noise = 1,
+    background_noise,
+    frame_noise,
+    keyframes,
+    weights,
+    test,
+    user ///< for programs, which the library never draws from
+};
 
 namespace detail {
 

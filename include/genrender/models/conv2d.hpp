@@ -21,11 +21,12 @@ public:
     /// Takes `name.weight` [out, in, kernel, kernel] and `name.bias` [out].
     conv2d(weights<Real>& source, std::string const& name, std::size_t in, std::size_t out, std::size_t kernel = 3,
            std::size_t stride = 1)
-        : in_(in), kernel_(kernel), stride_(stride),
-          weight_(static_cast<Eigen::Index>(kernel * kernel * in), static_cast<Eigen::Index>(out)) {
-        // Turn [out, in, tap] into [tap, in, out], which fits neighbourhoods gathered a whole token at a time.
+        : in_(in), kernel_(kernel), stride_(stride) {
+        // Asked for before there is memory for it, so that a wrong config is told by name.
         auto const values = source.take(name + ".weight", {out, in, kernel, kernel});
+        // Turn [out, in, tap] into [tap, in, out], which fits neighbourhoods gathered a whole token at a time.
         auto const taps = kernel * kernel;
+        weight_.resize(static_cast<Eigen::Index>(taps * in), static_cast<Eigen::Index>(out));
         for (std::size_t o = 0; o < out; ++o) {
             for (std::size_t i = 0; i < in; ++i) {
                 for (std::size_t tap = 0; tap < taps; ++tap) {

@@ -24,7 +24,7 @@ struct haar_scaling {
     double shift;
 };
 
-inline constexpr std::array<haar_scaling, 4> haar_scalings{{{1.05, 0.25}, {3.2, 0}, {3.2, 0}, {3.2, 0}}};
+inline constexpr std::array<haar_scaling, 4> haar_scalings{{{1.05, -0.38}, {4.5, 0}, {4.5, 0}, {4.5, 0}}};
 
 /// The transform of one square, which is its own inverse.
 template <class Real>

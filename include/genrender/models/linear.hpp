@@ -18,12 +18,11 @@ class linear {
 public:
     /// Takes `name.weight` and, if `has_bias`, `name.bias`.
     linear(weights<Real>& source, std::string const& name, std::size_t in, std::size_t out, bool has_bias = true)
-        : weight_(static_cast<Eigen::Index>(out), static_cast<Eigen::Index>(in)) {
-        auto const values = source.take(name + ".weight", {out, in});
-        std::copy(values.begin(), values.end(), weight_.data());
-        if (has_bias) {
-            bias_ = source.take(name + ".bias", {out});
-        }
+        : linear(source, name, {out, in}, has_bias) {}
+
+    /// Takes `name.weight` [out, in, 1, 1] and `name.bias`: the same map, written as a convolution.
+    static linear of_1x1_convolution(weights<Real>& source, std::string const& name, std::size_t in, std::size_t out) {
+        return {source, name, {out, in, 1, 1}, true};
     }
 
     std::size_t in_channels() const { return static_cast<std::size_t>(weight_.cols()); }
@@ -45,6 +44,16 @@ public:
     }
 
 private:
+    linear(weights<Real>& source, std::string const& name, std::vector<std::size_t> const& shape, bool has_bias) {
+        // Asked for before there is memory for it, so that a wrong config is told by name.
+        auto const values = source.take(name + ".weight", shape);
+        weight_.resize(static_cast<Eigen::Index>(shape[0]), static_cast<Eigen::Index>(shape[1]));
+        std::copy(values.begin(), values.end(), weight_.data());
+        if (has_bias) {
+            bias_ = source.take(name + ".bias", {shape[0]});
+        }
+    }
+
     void require_fit(strided_view<Real, 2> out, in_view<Real, 2> in) const {
         require_shape("linear", "in", in, {in.extent(0), in_channels()});
         require_shape("linear", "out", out, {in.extent(0), out_channels()});

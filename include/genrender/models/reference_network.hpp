@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,9 +40,10 @@ public:
     /// halved as often as the network does, or there is no frame; shape_error if the conditioning does not fit the
     /// config; file_error naming a tensor that is missing, misshapen or left over.
     reference_network(unet_config config, weights<Real>& unet_weights, weights<Real>& control_weights,
-                      network_conditioning<Real> conditioning, Loop loop = {})
+                      network_conditioning<Real> conditioning, Loop loop = Loop())
         : config_((require_config(config), std::move(config))), conditioning_(std::move(conditioning)),
-          loop_(std::move(loop)) {
+          loop_(std::move(loop)),
+          schedule_(scaled_linear_alphas_cumprod(config_.beta_start, config_.beta_end, config_.num_train_timesteps)) {
         require_conditioning();
         site_list sites(latent_grid_);
         sites.begin(network_kind::control);
@@ -52,14 +54,28 @@ public:
         embed_hints();
     }
 
-    /// The tiny reference network with random weights, for inverse depth [frames, height, width] in [0, 1] (latents
-    /// have half its height and width) and a text of prompt_words. Throws as the constructor and prompt_rows do.
+    /// The network of all its weights.
+    reference_network(reference_weights<Real>& source, network_conditioning<Real> conditioning, Loop loop = Loop())
+        : reference_network(source.config, source.unet, source.controlnet, std::move(conditioning), std::move(loop)) {}
+
+    /// A network with random weights, by default the tiny one, for inverse depth [frames, height, width] in [0, 1] (see
+    /// hint_of) and a text of prompt_words. Throws as the constructor and prompt_rows do.
     static reference_network seeded(strided_view<float const, 3> inverse_depth, std::string_view prompt,
-                                    std::uint64_t seed, Real guidance_scale = 2, Loop loop = {},
+                                    std::uint64_t seed, Real guidance_scale = 2, Loop loop = Loop(),
                                     unet_config const& config = {}) {
-        auto source = reference_weights<Real>::seeded(seed);
-        return {config, source.unet, source.controlnet,
-                source.conditioning(config, inverse_depth, prompt, guidance_scale), std::move(loop)};
+        auto source = reference_weights<Real>::seeded(seed, config);
+        return {source, source.conditioning(inverse_depth, prompt, guidance_scale), std::move(loop)};
+    }
+
+    /// The network of a folder in diffusers' layout (see diffusers_folder), which says all about it; the ControlNet in
+    /// a folder of its own if that is named. The text is of the words of its vocabulary. Throws as the constructor,
+    /// reference_weights::from_folder and prompt_rows do.
+    static reference_network from_folder(std::filesystem::path const& folder,
+                                         strided_view<float const, 3> inverse_depth, std::string_view prompt,
+                                         Real guidance_scale = 2, Loop loop = Loop(),
+                                         std::filesystem::path const& controlnet_folder = {}) {
+        auto source = reference_weights<Real>::from_folder(folder, controlnet_folder);
+        return {source, source.conditioning(inverse_depth, prompt, guidance_scale), std::move(loop)};
     }
 
     unet_config const& config() const { return config_; }
@@ -169,12 +185,12 @@ private:
     unet_config config_;
     network_conditioning<Real> conditioning_;
     Loop loop_;
+    discrete_noise_schedule schedule_;
     grid_extents latent_grid_;
     std::vector<attention_site> sites_;
     std::shared_ptr<controlnet<Real> const> control_;
     std::shared_ptr<unet<Real> const> unet_;
     std::vector<feature_maps<Real>> hints_;
-    discrete_noise_schedule schedule_;
 };
 
 } // namespace genrender

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/models/checked_json.hpp>
 #include <genrender/models/half_precision.hpp>
 
 #include <nlohmann/json.hpp>
@@ -18,7 +19,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -143,29 +143,8 @@ private:
                 "file ends after " + std::to_string(file.gcount()) + " bytes", std::to_string(count) + " to read");
     }
 
-    /// JSON itself lets the last of equal keys win; here they are an error, because readers differ.
-    nlohmann::json parse(std::string const& text) const {
-        std::vector<std::set<std::string>> keys;
-        auto const watch = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
-            if (event == nlohmann::json::parse_event_t::object_start) {
-                keys.emplace_back();
-            } else if (event == nlohmann::json::parse_event_t::object_end) {
-                keys.pop_back();
-            } else if (event == nlohmann::json::parse_event_t::key) {
-                auto const& key = parsed.get_ref<std::string const&>();
-                require(keys.back().insert(key).second, "header has the key " + key + " twice", "each key once");
-            }
-            return true;
-        };
-        try {
-            return nlohmann::json::parse(text, watch);
-        } catch (nlohmann::json::exception const& error) {
-            throw file_error(path_ + ": header is not JSON (" + error.what() + "), expected an object of tensors");
-        }
-    }
-
     void read_header(std::string const& text) {
-        auto const header = parse(text);
+        auto const header = checked_json(text, path_, "header", "an object of tensors");
         require(header.is_object(), "header is a JSON " + std::string(header.type_name()), "an object of tensors");
         for (auto const& [name, value] : header.items()) {
             if (name == "__metadata__") {

@@ -14,9 +14,9 @@
 // Nobody trained the reference network, and yet its output is shown. White random kernels show white noise, so kernels
 // lean to the low frequencies, as an untrained convolutional network does anyway (Ulyanov et al. 2018, 'Deep Image
 // Prior'). The rest is there so that pictures answer to what they should:
-// - to the noise: the last convolution is the first one turned round, and the skip between them is passed on, so the
-//   clean estimate resembles what it is given. Sampling turns that into feedback: chance decides, smoothing spreads and
-//   the norms bound it.
+// - to the noise: the last convolution is the first one turned round with its sign changed, and the skip between them
+//   is passed on, so the clean estimate of a velocity (sampling/preconditioning.hpp) resembles what it is given.
+//   Sampling turns that into feedback: chance decides, smoothing spreads and the norms bound it.
 // - to the depth: the ControlNet's zero convolutions are not zero, as they are before training.
 // - to the prompt: cross-attention speaks louder than the rest.
 // The three detail bands of the output (haar.hpp) are slopes of the mean band, so that pictures have no blocks of 2 x 2
@@ -134,7 +134,7 @@ inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view net
             auto const band = is_last ? out / means : 0;
             auto const strength =
                 scale * (is_first  ? (in < inputs / 4 ? 3.5f : 0.35f) * detail::seeded_palette(seed, in, out)
-                         : is_last ? detail::seeded_palette(seed, out % means, in)
+                         : is_last ? -detail::seeded_palette(seed, out % means, in)
                                    : 1.3f * normal(count + pair));
             auto const blur = is_first || is_last ? 0.5f : 1.0f;
             for (std::size_t tap = 0; tap < 9; ++tap) {

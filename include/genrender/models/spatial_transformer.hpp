@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: MIT
-// A transformer block between feature maps (diffusers' Transformer2DModel, as in Stable Diffusion 1.5).
+// Transformer blocks between feature maps (diffusers' Transformer2DModel, as in Stable Diffusion 1.x and 2.x).
 #pragma once
 
-#include <genrender/models/conv2d.hpp>
 #include <genrender/models/feature_maps.hpp>
 #include <genrender/models/forward_pass.hpp>
 #include <genrender/models/group_norm.hpp>
+#include <genrender/models/linear.hpp>
 #include <genrender/models/transformer_block.hpp>
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace genrender {
 
-/// x + proj_out(block(proj_in(norm(x)))).
+/// x + proj_out(blocks(proj_in(norm(x)))). The projections are 1x1 convolutions, or matrices, which is the same but for
+/// the shape of their tensors.
 template <class Real>
 class spatial_transformer {
 public:
-    /// Takes `name.norm`, `.proj_in`, `.transformer_blocks.0` and `.proj_out`.
+    /// Takes `name.norm`, `.proj_in`, `.transformer_blocks.i` and `.proj_out`.
     spatial_transformer(unet_config const& config, weights<Real>& source, site_list& sites, std::string const& name,
                         std::size_t level, network_part part)
         : norm_(source, name + ".norm", config.block_out_channels[level], config.norm_num_groups, Real(1e-6)),
-          proj_in_(source, name + ".proj_in", config.block_out_channels[level], config.block_out_channels[level], 1),
-          block_(config, source, sites, name + ".transformer_blocks.0", level, part),
-          proj_out_(source, name + ".proj_out", config.block_out_channels[level], config.block_out_channels[level], 1) {
+          proj_in_(projection(config, source, name + ".proj_in", config.block_out_channels[level])),
+          proj_out_(projection(config, source, name + ".proj_out", config.block_out_channels[level])) {
+        for (std::size_t i = 0; i < config.transformer_layers_per_block; ++i) {
+            blocks_.emplace_back(config, source, sites, name + ".transformer_blocks." + std::to_string(i), level, part);
+        }
     }
 
     /// Runs in place of x [frames, tokens, channels].
@@ -33,21 +37,25 @@ public:
         pass.each_frame([&](std::size_t i) {
             stack<Real, 2> normed(x[i].extents());
             norm_(normed.view(), x[i]);
-            proj_in_(h[i], normed, x.grid());
+            proj_in_(h[i], normed);
         });
-        block_(pass, h);
-        pass.each_frame([&](std::size_t i) {
-            stack<Real, 2> out(x[i].extents());
-            proj_out_(out.view(), h[i], x.grid());
-            add_scaled(x[i], out);
-        });
+        for (auto const& block : blocks_) {
+            block(pass, h);
+        }
+        pass.each_frame([&](std::size_t i) { proj_out_.add_to(x[i], h[i]); });
     }
 
 private:
+    static linear<Real> projection(unet_config const& config, weights<Real>& source, std::string const& name,
+                                   std::size_t channels) {
+        return config.use_linear_projection ? linear<Real>(source, name, channels, channels)
+                                            : linear<Real>::of_1x1_convolution(source, name, channels, channels);
+    }
+
     group_norm<Real> norm_;
-    conv2d<Real> proj_in_;
-    transformer_block<Real> block_;
-    conv2d<Real> proj_out_;
+    linear<Real> proj_in_;
+    linear<Real> proj_out_;
+    std::vector<transformer_block<Real>> blocks_;
 };
 
 } // namespace genrender

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The parameters of one network by name: from a safetensors file, or drawn from a seed as they are asked for.
+// The parameters of one network by name: from safetensors files, or drawn from a seed as they are asked for.
 #pragma once
 
 #include <genrender/core/error.hpp>
@@ -10,8 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,12 +21,24 @@ namespace genrender {
 template <std::floating_point Real>
 class weights {
 public:
-    /// The tensors of a safetensors file whose names begin with `prefix`, known by the rest of the name; converted as
-    /// they are taken. Throws file_error as safetensors_file does.
-    static weights from_file(std::string const& path, std::string prefix = "") {
+    /// The tensors of a safetensors file, converted as they are taken. Throws file_error as safetensors_file does.
+    static weights from_file(std::string const& path) { return from_files({path}); }
+
+    /// The tensors of several safetensors files. Throws value_error if there is none, file_error as safetensors_file
+    /// does, and for a tensor that is in two of them.
+    static weights from_files(std::vector<std::string> const& paths) {
+        require_value(!paths.empty(), "weights", "paths", "empty", "at least one");
         weights result;
-        result.file_.emplace(path);
-        result.prefix_ = std::move(prefix);
+        for (auto const& path : paths) {
+            safetensors_file const& file = result.files_.emplace_back(path);
+            for (auto const& [name, entry] : file.entries()) {
+                auto const [other, is_new] = result.file_of_.emplace(name, result.files_.size() - 1);
+                if (!is_new) {
+                    throw file_error(path + ": tensor " + name + " is in " + result.files_[other->second].path() +
+                                     " too, expected each tensor once");
+                }
+            }
+        }
         return result;
     }
 
@@ -45,38 +55,36 @@ public:
     /// is [..], expected [..]`.
     std::vector<Real> take(std::string const& name, std::vector<std::size_t> const& shape) {
         taken_.insert_or_assign(name, shape);
-        if (file_) {
-            auto const found = file_->entries().find(prefix_ + name);
-            if (found == file_->entries().end()) {
-                throw file_error(file_->path() + ": there is no tensor " + prefix_ + name + ", expected one of shape " +
+        if (!files_.empty()) {
+            auto const& file = file_with(name);
+            auto const found = file.entries().find(name);
+            if (found == file.entries().end()) {
+                throw file_error(file.path() + ": there is no tensor " + name + ", expected one of shape " +
                                  extents_text(shape));
             }
             if (found->second.shape != shape) {
-                throw file_error(file_->path() + ": tensor " + found->first + " is " +
-                                 extents_text(found->second.shape) + ", expected " + extents_text(shape));
+                throw file_error(file.path() + ": tensor " + name + " is " + extents_text(found->second.shape) +
+                                 ", expected " + extents_text(shape));
             }
-            return file_->template read<Real>(found->first);
+            return file.template read<Real>(name);
         }
         auto const values = seeded_tensor(seed_, network_, name, shape);
         return {values.begin(), values.end()};
     }
 
-    /// Throws file_error naming the tensors of the file that nobody took.
+    /// Throws file_error naming the tensors of the files that nobody took.
     void require_all_taken() const {
-        if (!file_) {
-            return;
-        }
         std::string surplus;
         std::size_t count = 0;
-        for (auto const& [name, entry] : file_->entries()) {
-            auto const is_ours = name.starts_with(prefix_) && !taken_.contains(name.substr(prefix_.size()));
-            if (is_ours && ++count <= 5) {
+        for (auto const& [name, file] : file_of_) {
+            if (!taken_.contains(name) && ++count <= 5) {
                 surplus += (count > 1 ? ", " : "") + name;
             }
         }
         if (count > 0) {
-            throw file_error(file_->path() + ": " + std::to_string(count) + " tensors have no place in the network: " +
-                             surplus + (count > 5 ? ", ..." : "") + ", expected none");
+            throw file_error(files_.front().path() + ": " + std::to_string(count) +
+                             " tensors have no place in the network: " + surplus + (count > 5 ? ", ..." : "") +
+                             ", expected none");
         }
     }
 
@@ -96,8 +104,8 @@ public:
     std::map<std::string, std::vector<float>> values() const {
         std::map<std::string, std::vector<float>> result;
         for (auto const& [name, shape] : taken_) {
-            result[name] =
-                file_ ? file_->template read<float>(prefix_ + name) : seeded_tensor(seed_, network_, name, shape);
+            result[name] = files_.empty() ? seeded_tensor(seed_, network_, name, shape)
+                                          : file_with(name).template read<float>(name);
         }
         return result;
     }
@@ -116,8 +124,14 @@ public:
 private:
     weights() = default;
 
-    std::optional<safetensors_file> file_;
-    std::string prefix_;
+    /// The file that holds a tensor, or, if none does, the one to blame.
+    safetensors_file const& file_with(std::string const& name) const {
+        auto const found = file_of_.find(name);
+        return files_[found == file_of_.end() ? 0 : found->second];
+    }
+
+    std::vector<safetensors_file> files_;
+    std::map<std::string, std::size_t> file_of_;
     std::uint64_t seed_ = 0;
     std::string network_;
     std::map<std::string, std::vector<std::size_t>> taken_;

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,9 +40,6 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
     require_value(settings.layers != nullptr, "render", "settings.layers", "empty", "a function");
     require_value(settings.alpha != nullptr, "render", "settings.alpha", "empty", "a function");
     evaluations(settings.method, settings.steps);
-    if (settings.window_begin < settings.window_end) {
-        draw_keyframes(settings.keyframes, frames, 0);
-    }
 }
 
 /// Throws value_error naming the first covered pixel whose UV is not finite.
@@ -64,38 +62,42 @@ inline void require_finite_uv(uv_maps_view const& UV) {
     }
 }
 
-/// Number of frames that a run of `frames` frames gives to the denoiser in all its evaluations, keyframes counted anew
-/// in each step that has them.
-template <class Real>
-std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t frames) {
-    auto const keyframes = settings.keyframes.drawing == keyframe_drawing::fixed ? settings.keyframes.frames.size()
-                                                                                 : settings.keyframes.count;
+/// Number of frames that a run of `frames` frames by a method gives to the denoiser in all its evaluations, keyframes
+/// counted anew in each step that has them. Throws value_error if a step's keyframes cannot be drawn.
+template <class Real, class Method = generative_rendering>
+std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t frames, Method const& method = {}) {
     std::size_t total = 0;
     for (std::size_t step = 0; step < settings.steps; ++step) {
         // Heun's second evaluation is at the level at which the next step begins.
         auto const evaluations = settings.method == sampler::heun && step > 0 ? 2U : 1U;
-        total += evaluations * (frames + (has_keyframes(settings, step) ? keyframes : 0));
+        total += evaluations * (frames + method.keyframes(settings, frames, step).size());
     }
     return total;
 }
 
-/// Renders an animation with a denoiser: z_0 [frames, channels, height, width], the clean latents of all frames, for
-/// the user's decoder. UV maps [frames, height, width] are of full resolution, a whole multiple of the denoiser's
-/// latent grid and feature grids; the denoiser owns prompt and depth. `make_map(grid)` compiles the correspondence map
-/// of a feature resolution. The same seeds give the same frames with every `loop`, bit for bit. Throws value_error or
-/// shape_error for arguments that do not fit, before anything is run; cancelled if the observer ends the run; what the
-/// denoiser throws.
-template <denoiser Phi, class MakeMap, parallel_loop Loop = sequential_loop>
-latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, MakeMap const& make_map,
+/// The correspondence map that `make_map(grid)` compiles.
+template <class MakeMap>
+using map_made_by = std::invoke_result_t<MakeMap const&, grid_extents>;
+
+/// Renders an animation by a method with a denoiser: z_0 [frames, channels, height, width], the clean latents of all
+/// frames, for the user's decoder. UV maps [frames, height, width] are of full resolution, a whole multiple of the
+/// denoiser's latent grid and feature grids; the denoiser owns prompt and depth. `make_map(grid)` compiles the
+/// correspondence map of a feature resolution. The same seeds give the same frames with every `loop`, bit for bit.
+/// Throws value_error or shape_error for arguments that do not fit, before anything is run; cancelled if the observer
+/// ends the run; what the denoiser throws.
+template <denoiser Phi, class MakeMap, parallel_loop Loop = sequential_loop,
+          sequence_method<sequence_evaluation<Phi, map_made_by<MakeMap>, Loop>> Method>
+latents<typename Phi::real_type> render(Method const& method, Phi const& phi, uv_maps_view const& UV,
+                                        MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
     using Real = typename Phi::real_type;
-    using map_type = decltype(make_map(grid_extents{}));
     require_render_settings(settings, UV.frame_count());
     require_finite_uv(UV);
     auto const sigmas = karras_schedule<Real>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
     auto const N = UV.frame_count();
     auto const grid = grid_extents(phi.latent_grid());
+    auto const total = frames_to_denoise(settings, N, method);
 
     auto const start = std::chrono::steady_clock::now();
 
@@ -110,10 +112,10 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
 
     // Compile what geometry decides, once for the animation.
     auto const background = background_mask(UV, grid);
-    correspondence_set<map_type> maps;
+    correspondence_set<map_made_by<MakeMap>> maps;
     for (auto const& site : phi.sites()) {
         for (std::uint32_t branch = 0; branch < phi.branches(); ++branch) {
-            if (!settings.post_attention || !settings.layers(site, branch)) {
+            if (!method.uses_correspondence(settings) || !settings.layers(site, branch)) {
                 continue;
             }
             for (std::size_t step = 0; step < settings.steps; ++step) {
@@ -126,10 +128,10 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
 
     report.add_seconds(0, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
-    // for t = T, ..., 1: keyframes, features, blending, injection, normalisation: see sequence_denoiser
-    progress_meter meter(settings.steps, frames_to_denoise(settings, N), std::move(observer));
+    // for t = T, ..., 1: what the method does, for alg. 1 keyframes, features, blending and injection; normalisation
+    progress_meter meter(settings.steps, total, std::move(observer));
     sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
-                              report);
+                              report, method);
     return sample(settings.method, D, std::move(z), sigmas, [&](std::size_t step, latents<Real>& z_next) {
         if (settings.normalization.enabled && settings.normalization.on_noisy_latents) {
             D.normalize(z_next, step);
@@ -138,12 +140,29 @@ latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, 
 }
 
 /// The same with the paper's texel grid as the correspondence, set up by `settings.correspondence`.
+template <denoiser Phi, parallel_loop Loop = sequential_loop,
+          sequence_method<sequence_evaluation<Phi, texel_grid, Loop>> Method>
+latents<typename Phi::real_type> render(Method const& method, Phi const& phi, uv_maps_view const& UV,
+                                        render_settings<typename Phi::real_type> const& settings, render_report& report,
+                                        progress_observer observer = {}, Loop const& loop = {}) {
+    auto const make_map = [&](grid_extents grid) { return texel_grid(UV, grid, settings.correspondence, loop); };
+    return render(method, phi, UV, make_map, settings, report, std::move(observer), loop);
+}
+
+/// Alg. 1 with a correspondence of the user's own.
+template <denoiser Phi, class MakeMap, parallel_loop Loop = sequential_loop>
+latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, MakeMap const& make_map,
+                                        render_settings<typename Phi::real_type> const& settings, render_report& report,
+                                        progress_observer observer = {}, Loop const& loop = {}) {
+    return render(generative_rendering{}, phi, UV, make_map, settings, report, std::move(observer), loop);
+}
+
+/// Alg. 1: Generative Rendering, as the paper has it.
 template <denoiser Phi, parallel_loop Loop = sequential_loop>
 latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
-    auto const make_map = [&](grid_extents grid) { return texel_grid(UV, grid, settings.correspondence, loop); };
-    return render(phi, UV, make_map, settings, report, std::move(observer), loop);
+    return render(generative_rendering{}, phi, UV, settings, report, std::move(observer), loop);
 }
 
 } // namespace genrender

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <type_traits>
 
 namespace genrender {
 
@@ -21,7 +22,7 @@ inline bool is_in_decoder(attention_site const& site, std::uint32_t /*branch*/) 
     return site.network == network_kind::denoiser && site.part == network_part::decoder;
 }
 
-/// Settings of one run of Alg. 1.
+/// Settings of one run of Alg. 1, or of another sequence_method, which says what it leaves unread.
 template <class Real>
 struct render_settings {
     std::size_t steps = 50;         ///< T, denoising steps
@@ -50,5 +51,12 @@ struct render_settings {
 
     std::size_t frames_per_call = 1; ///< frames that the injected pass gives the denoiser at once
 };
+
+/// Whether a step lies in the window [begin, end) of shares of all steps.
+template <class Real>
+bool is_in_window(std::size_t step, std::size_t steps, Real begin, std::type_identity_t<Real> end) {
+    auto const share = static_cast<Real>(step) / static_cast<Real>(steps);
+    return share >= begin && share < end;
+}
 
 } // namespace genrender

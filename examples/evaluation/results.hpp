@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// The figures of all runs, and the tables that are made of them: CSV for programs, Markdown for people.
+#pragma once
+
+#include "measures.hpp"
+
+#include <genrender/core/error.hpp>
+#include <genrender/evaluation/mean_and_error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace genrender::examples {
+
+/// One run and what was measured of it.
+struct run_figures {
+    std::string method; ///< name and noise
+    std::string group;  ///< render, method, noise or ablation
+    std::string scene;
+    std::string prompt;
+    std::uint64_t seed;
+    measures figures;
+};
+
+/// A column of a table: a measure and its heading.
+struct table_column {
+    std::string measure;
+    std::string heading;
+};
+
+namespace detail {
+
+inline std::string decimal(double value, int digits = 4) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+    return text.data();
+}
+
+/// The methods of the groups, in the order in which they first ran.
+inline std::vector<std::string> methods_of(std::span<run_figures const> runs, std::span<std::string const> groups) {
+    std::vector<std::string> methods;
+    for (auto const& group : groups) {
+        for (auto const& run : runs) {
+            if (run.group == group && std::find(methods.begin(), methods.end(), run.method) == methods.end()) {
+                methods.push_back(run.method);
+            }
+        }
+    }
+    return methods;
+}
+
+} // namespace detail
+
+/// Mean and standard error of a measure over all runs of a method; none if no run has it.
+inline std::optional<mean_and_error> figure_of(std::span<run_figures const> runs, std::string const& method,
+                                               std::string const& measure) {
+    std::vector<double> values;
+    for (auto const& run : runs) {
+        if (run.method == method && run.figures.contains(measure)) {
+            values.push_back(run.figures.at(measure));
+        }
+    }
+    return values.empty() ? std::nullopt : std::optional(mean_and_error_of(values));
+}
+
+/// Mean and standard error of the difference `method` minus `other` between runs of the same scene, prompt and seed;
+/// none if they share none.
+inline std::optional<mean_and_error> paired_difference(std::span<run_figures const> runs, std::string const& method,
+                                                       std::string const& other, std::string const& measure) {
+    std::vector<double> values;
+    for (auto const& a : runs) {
+        for (auto const& b : runs) {
+            if (a.method == method && b.method == other && a.scene == b.scene && a.prompt == b.prompt &&
+                a.seed == b.seed && a.figures.contains(measure) && b.figures.contains(measure)) {
+                values.push_back(a.figures.at(measure) - b.figures.at(measure));
+            }
+        }
+    }
+    return values.empty() ? std::nullopt : std::optional(mean_and_error_of(values));
+}
+
+/// `0.1234 ± 0.0056`; `-` for none.
+inline std::string figure_text(std::optional<mean_and_error> const& figure) {
+    if (!figure) {
+        return "-";
+    }
+    return detail::decimal(figure->mean) + (figure->error ? " ± " + detail::decimal(*figure->error) : "");
+}
+
+/// A Markdown table: the methods of `groups` as rows, means and standard errors over their runs.
+inline std::string markdown_table(std::span<run_figures const> runs, std::span<std::string const> groups,
+                                  std::span<table_column const> columns) {
+    std::ostringstream text;
+    text << "| Method |";
+    for (auto const& column : columns) {
+        text << ' ' << column.heading << " |";
+    }
+    text << "\n|---|";
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        text << "---|";
+    }
+    text << '\n';
+    for (auto const& method : detail::methods_of(runs, groups)) {
+        text << "| " << method << " |";
+        for (auto const& column : columns) {
+            text << ' ' << figure_text(figure_of(runs, method, column.measure)) << " |";
+        }
+        text << '\n';
+    }
+    return text.str();
+}
+
+/// A Markdown table of `reference` against every other method of the groups: paired differences, reference minus
+/// method, so that their sign says which is greater.
+inline std::string difference_table(std::span<run_figures const> runs, std::string const& reference,
+                                    std::span<std::string const> groups, std::span<table_column const> columns) {
+    std::ostringstream text;
+    text << "| " << reference << " minus |";
+    for (auto const& column : columns) {
+        text << ' ' << column.heading << " |";
+    }
+    text << "\n|---|";
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        text << "---|";
+    }
+    text << '\n';
+    for (auto const& method : detail::methods_of(runs, groups)) {
+        if (method == reference) {
+            continue;
+        }
+        text << "| " << method << " |";
+        for (auto const& column : columns) {
+            text << ' ' << figure_text(paired_difference(runs, reference, method, column.measure)) << " |";
+        }
+        text << '\n';
+    }
+    return text.str();
+}
+
+/// Every run on a line of its own, with all measures of any run as columns.
+inline std::string runs_csv(std::span<run_figures const> runs) {
+    std::map<std::string, bool> names;
+    for (auto const& run : runs) {
+        for (auto const& [name, figure] : run.figures) {
+            names[name] = true;
+        }
+    }
+    std::ostringstream text;
+    text << "group,method,scene,prompt,seed";
+    for (auto const& [name, present] : names) {
+        text << ',' << name;
+    }
+    text << '\n';
+    for (auto const& run : runs) {
+        text << run.group << ",\"" << run.method << "\"," << run.scene << ',' << run.prompt << ',' << run.seed;
+        for (auto const& [name, present] : names) {
+            text << ',' << (run.figures.contains(name) ? detail::decimal(run.figures.at(name), 6) : "");
+        }
+        text << '\n';
+    }
+    return text.str();
+}
+
+/// Mean and standard error of every measure of every method, one a line.
+inline std::string means_csv(std::span<run_figures const> runs) {
+    std::map<std::string, bool> names;
+    std::vector<std::pair<std::string, std::string>> rows;
+    for (auto const& run : runs) {
+        for (auto const& [name, figure] : run.figures) {
+            names[name] = true;
+        }
+        if (std::pair const row(run.group, run.method); std::find(rows.begin(), rows.end(), row) == rows.end()) {
+            rows.push_back(row);
+        }
+    }
+    std::ostringstream text;
+    text << "group,method,measure,mean,standard_error,runs\n";
+    for (auto const& [group, method] : rows) {
+        for (auto const& [name, present] : names) {
+            if (auto const figure = figure_of(runs, method, name)) {
+                text << group << ",\"" << method << "\"," << name << ',' << detail::decimal(figure->mean, 6) << ','
+                     << (figure->error ? detail::decimal(*figure->error, 6) : "") << ',' << figure->count << '\n';
+            }
+        }
+    }
+    return text.str();
+}
+
+} // namespace genrender::examples

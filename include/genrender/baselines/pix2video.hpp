@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 4: Pix2Video*] The baseline in which every frame attends to an anchor and to the previous frame.
+#pragma once
+
+#include <genrender/baselines/previous_frame_attention.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// The pre-attention feature propagation of Pix2Video (Ceylan et al., ICCV 2023) as the paper adapts it, a model of
+/// sequence_method: no inversion, no latent guidance, no correspondences. "Each frame attends to an anchor and previous
+/// frame" is read as: keys and values of frame 0 and frame i - 1 replace those of frame i.
+///
+/// Frames are denoised in their order, one call of the denoiser after the other, so the run's loop has nothing to
+/// share; a larger `settings.frames_per_call` gives the engine more at once. It needs an engine that calls back: what a
+/// static graph is given (feature_io) always includes a frame's own keys. Of the settings it leaves unread: keyframes,
+/// correspondence, alpha, pre_attention, post_attention, keeps_own_copy, first_fill_share.
+struct pix2video {
+    /// None.
+    template <class Real>
+    std::vector<frame_index> keyframes(render_settings<Real> const&, std::size_t, std::size_t) const {
+        return {};
+    }
+
+    /// Never.
+    template <class Real>
+    bool uses_correspondence(render_settings<Real> const&) const {
+        return false;
+    }
+
+    /// Estimates all frames; outside the window every frame by itself.
+    template <class Evaluation>
+    void operator()(Evaluation const& evaluation) const {
+        using features_type = typename Evaluation::features_type;
+        auto const& settings = evaluation.settings();
+        if (!is_in_window(evaluation.step(), settings.steps, settings.window_begin, settings.window_end)) {
+            evaluation.denoise_frames_alone();
+            return;
+        }
+        earlier_frames<features_type> earlier;
+        auto latest = evaluation.new_bank();
+        std::size_t latest_count = 0;
+        evaluation.denoise_frames_in_order([&](std::span<frame_index const> frames) {
+            if (latest_count > 0) {
+                earlier.add(std::exchange(latest, evaluation.new_bank()), latest_count);
+            }
+            latest_count = frames.size();
+            return previous_frame_attention<features_type>(
+                earlier, latest, [&evaluation](attention_place place) { return evaluation.takes_part(place); });
+        });
+        evaluation.require_recorded(latest, "frames");
+    }
+};
+
+} // namespace genrender

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 4: TokenFlow*] The baseline that skips self-attention between keyframes and interpolates their outputs.
+#pragma once
+
+#include <genrender/baselines/propagation_plan.hpp>
+#include <genrender/baselines/token_propagation.hpp>
+#include <genrender/keyframes/draw_keyframes.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// The extended attention and token propagation of TokenFlow (Geyer et al., ICLR 2024) as the paper adapts it, a model
+/// of sequence_method: keyframes attend to each other, every other frame takes, token by token, the outputs of the
+/// keyframes before and after it at the corresponding tokens, weighted by distance in time. Correspondences are the
+/// scene's own instead of matched features; there is no inversion and no injection of features of a source video.
+///
+/// Keyframes are drawn as `settings.keyframes` says; TokenFlow's own draw is keyframe_drawing::stratified. The report's
+/// coverage counts tokens on objects that a neighbouring keyframe shows. Of the settings it leaves unread: alpha,
+/// pre_attention, post_attention, keeps_own_copy, first_fill_share, and texel_reading::average, of which it takes the
+/// token of greatest weight.
+struct tokenflow {
+    /// KF of a step in the window. Throws as draw_keyframes does.
+    template <class Real>
+    std::vector<frame_index> keyframes(render_settings<Real> const& settings, std::size_t frames,
+                                       std::size_t step) const {
+        return is_in_window(step, settings.steps, settings.window_begin, settings.window_end)
+                   ? draw_keyframes(settings.keyframes, frames, step)
+                   : std::vector<frame_index>{};
+    }
+
+    /// Always.
+    template <class Real>
+    bool uses_correspondence(render_settings<Real> const&) const {
+        return true;
+    }
+
+    /// Estimates all frames; outside the window every frame by itself. A keyframe runs again with the others and takes
+    /// its own outputs, which gives the estimate of the keyframes' pass.
+    template <class Evaluation>
+    void operator()(Evaluation const& evaluation) const {
+        using real_type = typename Evaluation::real_type;
+        auto const KF = keyframes(evaluation.settings(), evaluation.frame_count(), evaluation.step());
+        if (KF.empty()) {
+            evaluation.denoise_frames_alone();
+            return;
+        }
+        auto const bank = evaluation.record_keyframes(KF, true);
+        evaluation.denoise_frames([&](std::span<frame_index const> frames) {
+            auto const rows = evaluation.plan_rows(frames, [&](auto const& map, frame_index i) {
+                auto propagation = make_propagation_plan<real_type>(map, KF, i);
+                evaluation.report_coverage(map, i, propagation.matched);
+                return std::move(propagation.plan);
+            });
+            return token_propagation<typename Evaluation::features_type, real_type>(bank, rows);
+        });
+    }
+};
+
+} // namespace genrender

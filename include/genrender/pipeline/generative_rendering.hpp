@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1: the body of the loop] The paper's method: keyframes, blending along the correspondences, injection.
+#pragma once
+
+#include <genrender/blending/blend_plan.hpp>
+#include <genrender/injection/injector.hpp>
+#include <genrender/keyframes/draw_keyframes.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace genrender {
+
+/// Whether a step draws keyframes: it lies in the window, and something is injected.
+template <class Real>
+bool has_keyframes(render_settings<Real> const& settings, std::size_t step) {
+    return (settings.pre_attention || settings.post_attention) &&
+           is_in_window(step, settings.steps, settings.window_begin, settings.window_end);
+}
+
+/// The model of sequence_method that `render` runs by default: draws keyframes, records their features in extended
+/// attention, blends them into the unified texture, and denoises every frame with pre- and post-attention injection. A
+/// step without keyframes leaves every frame to itself.
+struct generative_rendering {
+    /// KF of a step; none where nothing is injected. Throws as draw_keyframes does.
+    template <class Real>
+    std::vector<frame_index> keyframes(render_settings<Real> const& settings, std::size_t frames,
+                                       std::size_t step) const {
+        return has_keyframes(settings, step) ? draw_keyframes(settings.keyframes, frames, step)
+                                             : std::vector<frame_index>{};
+    }
+
+    /// Post-attention injection needs them.
+    template <class Real>
+    bool uses_correspondence(render_settings<Real> const& settings) const {
+        return settings.post_attention;
+    }
+
+    /// The body of Alg. 1's loop.
+    template <class Evaluation>
+    void operator()(Evaluation const& evaluation) const {
+        using real_type = typename Evaluation::real_type;
+        using injector_type = injector<typename Evaluation::features_type, real_type>;
+        auto const& settings = evaluation.settings();
+        auto const KF = keyframes(settings, evaluation.frame_count(), evaluation.step());
+        if (KF.empty()) {
+            evaluation.denoise_frames_alone();
+            return;
+        }
+        // f_KF, F_KF <- Phi(z_KF, D_KF, c)
+        auto const bank = evaluation.record_keyframes(KF, settings.pre_attention);
+
+        // z^i <- Phi(z^i, D^i, c, f_KF, F_bar^i), F_bar^i = pi_i(T_bar_KF)
+        injection_settings<real_type> injection;
+        injection.pre_attention = settings.pre_attention;
+        injection.post_attention = settings.post_attention;
+        injection.keeps_own_copy = settings.keeps_own_copy;
+        injection.alpha = [&evaluation](site_index site) { return evaluation.alpha(site); };
+        evaluation.denoise_frames([&](std::span<frame_index const> frames) {
+            typename injector_type::rows_of rows;
+            if (settings.post_attention) {
+                rows = evaluation.plan_rows(frames, [&](auto const& map, frame_index i) {
+                    auto plan = make_blend_plan<real_type>(map, KF, i, settings.first_fill_share);
+                    evaluation.report_coverage(map, i, plan.covered_count());
+                    return plan;
+                });
+            }
+            return injector_type(bank, KF, rows, injection);
+        });
+    }
+};
+
+} // namespace genrender

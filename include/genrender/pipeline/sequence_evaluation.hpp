@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1: the body of the loop] One evaluation D(z, sigma) of a whole animation under way: the passes that a
+// sequence_method is made of.
+#pragma once
+
+#include <genrender/attention/plain_attention.hpp>
+#include <genrender/blending/blend_plan.hpp>
+#include <genrender/core/parallel.hpp>
+#include <genrender/core/tensor.hpp>
+#include <genrender/correspondence/correspondence_set.hpp>
+#include <genrender/keyframes/recorder.hpp>
+#include <genrender/pipeline/progress.hpp>
+#include <genrender/pipeline/render_report.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+#include <genrender/sampling/denoiser.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <ranges>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// What all evaluations of a run share. Everything is referred to.
+template <denoiser Phi, correspondence_map Map, parallel_loop Loop>
+struct sequence_run {
+    Phi const* phi;
+    correspondence_set<Map> const* maps;
+    render_settings<typename Phi::real_type> const* settings;
+    Loop const* loop;
+    progress_meter* meter;
+    render_report* report;
+};
+
+/// The passes over an animation at one noise level. A pass gives the denoiser stacks of frames with a processor, counts
+/// them for the observer and its seconds for the report; the method decides on passes and processors.
+template <denoiser Phi, correspondence_map Map, parallel_loop Loop>
+class sequence_evaluation {
+public:
+    using real_type = typename Phi::real_type;
+    using features_type = typename Phi::features_type;
+    /// Rows of a frame's plan at a site.
+    using rows_of = std::function<sparse_rows<real_type>(site_index, frame_index)>;
+
+    /// Reads z and writes the clean estimates x0, both [frames, channels, height, width]. Everything is referred to and
+    /// must outlive the evaluation.
+    sequence_evaluation(sequence_run<Phi, Map, Loop> const& run, latents<real_type>& x0, latents<real_type> const& z,
+                        real_type sigma, std::size_t step)
+        : run_(&run), x0_(&x0), z_(&z), sigma_(sigma), step_(step) {}
+
+    render_settings<real_type> const& settings() const { return *run_->settings; }
+    std::size_t step() const { return step_; }
+    std::size_t frame_count() const { return z_->shape()[0]; }
+
+    /// Whether the settings let a place take part.
+    bool takes_part(attention_place place) const {
+        return settings().layers(run_->phi->sites()[place.site.value], place.branch);
+    }
+
+    /// alpha of eq. 6 at a site in this step.
+    real_type alpha(site_index site) const { return settings().alpha(step_, run_->phi->sites()[site.value]); }
+
+    /// An empty bank for features of all places.
+    feature_bank<features_type> new_bank() const {
+        return {static_cast<std::size_t>(std::ranges::size(run_->phi->sites())), run_->phi->branches()};
+    }
+
+    /// f_KF, F_KF <- Phi(z_KF, D_KF, c): denoises the frames KF as one stack and keeps their features at the places
+    /// that take part; with `extended` they attend to each other (eq. 3). Throws value_error if the denoiser did not
+    /// run the processor at one of these places.
+    feature_bank<features_type> record_keyframes(std::vector<frame_index> const& KF, bool extended) const {
+        run_->meter->begin(step_, render_pass::keyframes, KF.size());
+        auto const start = clock::now();
+        auto const& shape = z_->shape();
+        auto z_KF = latents<real_type>::from_shape({KF.size(), shape[1], shape[2], shape[3]});
+        auto x0_KF = z_KF; // Not read: keyframes are denoised again with all the others.
+        for (std::size_t k = 0; k < KF.size(); ++k) {
+            copy(to_view(z_KF)[k], to_view(*z_)[KF[k].value]);
+        }
+        auto bank = new_bank();
+        recorder<features_type> const record(
+            bank, [this](attention_place place) { return takes_part(place); }, extended);
+        auto const begin = clock::now();
+        (*run_->phi)(to_view(x0_KF), to_view(std::as_const(z_KF)), sigma_, KF, record);
+        auto const denoiser = seconds_since(begin);
+        run_->report->add_seconds(denoiser, seconds_since(start) - denoiser);
+        require_recorded(bank, "keyframes");
+        run_->meter->add(KF.size());
+        return bank;
+    }
+
+    /// Throws value_error unless the bank holds features of `whose` at every place that takes part: a denoiser may not
+    /// have run the processor, or not have handed over what it asked for.
+    void require_recorded(feature_bank<features_type> const& bank, char const* whose) const {
+        auto const& sites = run_->phi->sites();
+        for (std::uint32_t site = 0; site < std::ranges::size(sites); ++site) {
+            for (std::uint32_t branch = 0; branch < run_->phi->branches(); ++branch) {
+                if (takes_part({{site}, branch}) && bank.find({{site}, branch}) == nullptr) {
+                    throw value_error(std::string("sequence_denoiser: features of ") + whose + " at site " +
+                                      sites[site].name + " of branch " + std::to_string(branch) +
+                                      " are missing, expected the denoiser to run its processor there");
+                }
+            }
+        }
+    }
+
+    /// One plan per feature resolution and frame, each a blend_plan made by `make_plan(map, frame)`: F_bar^i = rows *
+    /// F_KF. The function keeps the plans.
+    template <class MakePlan>
+    rows_of plan_rows(std::span<frame_index const> frames, MakePlan const& make_plan) const {
+        using plans_type = std::map<std::pair<grid_extents, frame_index>, blend_plan<real_type>>;
+        auto const plans = std::make_shared<plans_type>();
+        for (auto const& [grid, map] : *run_->maps) {
+            for (auto const frame : frames) {
+                plans->emplace(std::pair(grid, frame), make_plan(map, frame));
+            }
+        }
+        return [phi = run_->phi, plans](site_index site, frame_index frame) {
+            return plans->at({phi->sites()[site.value].grid, frame}).rows();
+        };
+    }
+
+    /// Tells the report that a plan covers `covered` of the tokens of a frame that show an object.
+    void report_coverage(Map const& map, frame_index frame, std::size_t covered) const {
+        std::size_t on_objects = 0;
+        for (std::uint32_t t = 0; t < grid_extents(map.grid()).size(); ++t) {
+            on_objects += map.point_at(frame, {t}).has_value() ? 1U : 0U;
+        }
+        run_->report->add_coverage(map.grid(), on_objects, covered);
+    }
+
+    /// z^i <- Phi(z^i, D^i, c) for every frame, `settings().frames_per_call` at once, with the processor that
+    /// `make_processor(frames)` gives. Calls may run at the same time.
+    template <class MakeProcessor>
+    void denoise_frames(MakeProcessor const& make_processor) const {
+        denoise_frames(*run_->loop, make_processor);
+    }
+
+    /// The same one call after the other, from the first frame on, for methods in which a frame needs the one before.
+    template <class MakeProcessor>
+    void denoise_frames_in_order(MakeProcessor const& make_processor) const {
+        denoise_frames(sequential_loop{}, make_processor);
+    }
+
+    /// Every frame by itself, as the network has it.
+    void denoise_frames_alone() const {
+        plain_attention const plain;
+        denoise_frames([&](auto) -> plain_attention const& { return plain; });
+    }
+
+private:
+    using clock = std::chrono::steady_clock;
+
+    static double seconds_since(clock::time_point start) {
+        return std::chrono::duration<double>(clock::now() - start).count();
+    }
+
+    template <class CallLoop, class MakeProcessor>
+    void denoise_frames(CallLoop const& loop, MakeProcessor const& make_processor) const {
+        auto const count = frame_count();
+        auto const stride = std::min(settings().frames_per_call, count);
+        run_->meter->begin(step_, render_pass::frames, count);
+        auto const pass_start = clock::now();
+        std::mutex mutex;
+        double in_denoiser = 0; // Seconds of threads, which share the pass's seconds by the clock on the wall.
+        double outside = 0;
+        loop((count + stride - 1) / stride, [&](std::size_t call) {
+            auto const start = clock::now();
+            auto const first = call * stride;
+            std::vector<frame_index> frames;
+            for (auto i = first; i < std::min(first + stride, count); ++i) {
+                frames.push_back({static_cast<std::uint32_t>(i)});
+            }
+            auto const& processor = make_processor(std::span<frame_index const>(frames));
+            auto const begin = clock::now();
+            (*run_->phi)(to_view(*x0_).slice(first, frames.size()), to_view(*z_).slice(first, frames.size()), sigma_,
+                         frames, processor);
+            auto const denoiser = seconds_since(begin);
+            {
+                std::lock_guard const lock(mutex);
+                in_denoiser += denoiser;
+                outside += seconds_since(start) - denoiser;
+            }
+            run_->meter->add(frames.size());
+        });
+        auto const share = in_denoiser / std::max(in_denoiser + outside, 1e-12);
+        auto const seconds = seconds_since(pass_start);
+        run_->report->add_seconds(seconds * share, seconds * (1 - share));
+    }
+
+    sequence_run<Phi, Map, Loop> const* run_;
+    latents<real_type>* x0_;
+    latents<real_type> const* z_;
+    real_type sigma_;
+    std::size_t step_;
+};
+
+} // namespace genrender

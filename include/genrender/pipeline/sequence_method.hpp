@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3, 4] The front door of methods: how all frames of an animation are denoised at one noise level.
+#pragma once
+
+#include <genrender/core/index.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+
+#include <concepts>
+#include <cstddef>
+#include <vector>
+
+namespace genrender {
+
+/// Denoises all frames of an animation at one noise level by passes of an evaluation. Everything else of a run is the
+/// same for every method: initial noise, noise levels, sampler, latent normalisation, progress and report.
+///
+/// expression                                   | type                | meaning
+/// ---------------------------------------------|---------------------|-----------------------------------------------
+/// `method.keyframes(settings, frames, step)`   | vector<frame_index> | the frames that it denoises in a pass of their
+///                                              |                     | own in this step of an animation of `frames`
+///                                              |                     | frames; empty for none. Throws value_error if
+///                                              |                     | the settings do not fit
+/// `method.uses_correspondence(settings)`       | bool                | whether correspondence maps are to be compiled
+///                                              |                     | for the sites that take part
+/// `method(evaluation)`                         | void                | writes the clean estimates of all frames by
+///                                              |                     | passes of the sequence_evaluation
+///
+/// These the compiler cannot check, and a model owes them (tests/support/sequence_method_laws.hpp): every evaluation
+/// runs the keyframes it announced and every frame once; estimates depend neither on the loop nor on
+/// `settings.frames_per_call`; equal arguments give equal estimates, from any thread: nothing is kept from one
+/// evaluation to the next, and what is drawn depends on the settings' seeds and the step alone.
+/// It does not require to read all settings; each model says which it leaves unread.
+///
+/// See also: generative_rendering, the paper's method; pix2video and tokenflow, its baselines; sequence_evaluation,
+/// what it is given.
+template <class Method, class Evaluation>
+concept sequence_method = std::copyable<Method> &&
+    requires(Method const& method, Evaluation const& evaluation,
+             render_settings<typename Evaluation::real_type> const& settings, std::size_t number) {
+    { method.keyframes(settings, number, number) } -> std::same_as<std::vector<frame_index>>;
+    { method.uses_correspondence(settings) } -> std::convertible_to<bool>;
+    { method(evaluation) } -> std::same_as<void>;
+};
+
+} // namespace genrender

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The concept takes its archetype and the embedder of the tests, and nothing less.
+#include <genrender/evaluation/image_text_embedder.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/colour_embedder.hpp"
+#include "support/embedder_laws.hpp"
+
+#include <string>
+#include <vector>
+
+using namespace genrender;
+using genrender::testing::check_embedder_laws;
+using genrender::testing::colour_embedder;
+using genrender::testing::is_embedding;
+
+namespace {
+
+struct without_texts : image_text_embedder_archetype<float> {
+    std::vector<float> embed_text(std::string_view) const = delete;
+};
+struct of_another_scalar : image_text_embedder_archetype<float> {
+    std::vector<double> embed_image(strided_view<float const, 3>) const;
+};
+
+static_assert(image_text_embedder<image_text_embedder_archetype<float>>);
+static_assert(image_text_embedder<image_text_embedder_archetype<double>>);
+static_assert(!image_text_embedder<without_texts>);
+static_assert(!image_text_embedder<of_another_scalar>);
+static_assert(!image_text_embedder<int>);
+
+} // namespace
+
+TEST_SUITE("evaluation/image_text_embedder") {
+    TEST_CASE_TEMPLATE("[GR sec. 4] an embedder keeps the laws", Real, float, double) {
+        static_assert(image_text_embedder<colour_embedder<Real>>);
+        std::vector<std::string> const texts{"red", "white"};
+        check_embedder_laws(colour_embedder<Real>{}, {3, 5, 4}, texts);
+    }
+
+    TEST_CASE("the laws refuse vectors of another length or without a direction") {
+        CHECK(is_embedding<float>({0, 1}, 2));
+        CHECK_FALSE(is_embedding<float>({0, 1}, 3));
+        CHECK_FALSE(is_embedding<float>({0, 0}, 2));
+        CHECK_FALSE(is_embedding<float>({1, std::numeric_limits<float>::infinity()}, 2));
+    }
+}
