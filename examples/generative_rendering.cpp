@@ -35,16 +35,13 @@ reference_weights<float> load_weights(render_options const& options) {
     return weights;
 }
 
-/// Latents of all frames by the method that the options name.
-latents<float> rendered(render_options const& options, network const& phi, uv_maps_view const& UV,
-                        render_report& report, threaded_loop const& loop) {
-    auto const by = [&](auto const& method) {
-        return render(method, phi, UV, options.settings, report, progress_line(options.is_quiet), loop);
-    };
-    switch (options.method) {
-    case render_method::pix2video: return by(pix2video{});
-    case render_method::tokenflow: return by(tokenflow{});
-    default: return by(generative_rendering{});
+/// What `use` makes of the method that the options name.
+template <class Use>
+auto with_method(render_method method, Use const& use) {
+    switch (method) {
+    case render_method::pix2video: return use(pix2video{});
+    case render_method::tokenflow: return use(tokenflow{});
+    default: return use(generative_rendering{});
     }
 }
 
@@ -55,7 +52,10 @@ void run(render_options const& options, guidance_source const& source, reference
     network const phi(weights, weights.conditioning(to_view(nearness), options.prompt), loop);
 
     render_report report;
-    auto const z = rendered(options, phi, to_uv_view(source.guidance.uv), report, loop);
+    auto const z = with_method(options.method, [&](auto const& method) {
+        return render(method, phi, to_uv_view(source.guidance.uv), options.settings, report,
+                      progress_line(options.is_quiet), loop);
+    });
 
     auto const images = decoded(z);
     std::vector<rgb8_image> frames;
@@ -100,6 +100,9 @@ int main(int argc, char** argv) {
         auto const frame_count = source.guidance.uv.frame_count();
         options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
         require_render_settings(options.settings, frame_count);
+        with_method(options.method, [&](auto const& method) { // which knows whether it draws keyframes
+            return frames_to_denoise(options.settings, frame_count, method);
+        });
         if (!options.beside.empty()) {
             earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
         }

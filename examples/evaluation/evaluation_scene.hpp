@@ -103,9 +103,9 @@ tensor<float, 4> painted_frames(evaluation_scene const& scene, surface_style sty
     auto const first = scene.animation.frame({0});
     random_draw draw(seed, 0);
     scene_paint paint;
-    // Features as large as in the training data: 6 to 9 pixels of 64, where half of what stands out is nearer.
+    // Features as large as in the training data: 7 to 10 pixels of 64, where half of what stands out is nearer.
     auto const pixel_size = 2 * std::tan(first.camera.vertical_fov / 2) * middle_depth(scene) / 64;
-    auto const feature = pixel_size * draw.uniform(6, 9);
+    auto const feature = pixel_size * draw.uniform(7, 10);
     auto const colours = draw_palette(draw, {}, palette_set::held_out);
     for (auto const& posed : first.objects) {
         auto const is_ground = !stands_out(posed.object);

@@ -11,8 +11,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -88,15 +86,11 @@ public:
     /// `feature` is the width of a stripe, side of a square, ... in scene units.
     painted_surface(random_draw& draw, surface_style style, palette const& colours, mesh const& surface, float feature)
         : style_(style), colours_(colours), feature_(feature) {
-        // Squares lie along the axes of the object, so that boxes show squares; all else lies in any direction.
-        if (style == surface_style::stripes) {
-            auto const axis = draw.direction();
-            turn_[0] = axis;
-        }
+        // Stripes go around the rest pose and squares lie along its axes, so that only their places are left to chance.
         shift_ = glm::vec3(draw.uniform(0, 64), draw.uniform(0, 64), draw.uniform(0, 64));
         noise_ = draw.below(1U << 30U);
         if (style == surface_style::dots) {
-            dots_ = scattered_points(draw, surface, 1.75f * feature);
+            dots_ = scattered_points(draw, surface, 1.9f * feature);
         }
     }
 
@@ -105,8 +99,7 @@ public:
         auto const scaled = p / feature_;
         switch (style_) {
         case surface_style::stripes: {
-            auto const place = glm::dot(turn_[0], scaled) + shift_.x;
-            return is_odd(place) ? colours_.first : colours_.second;
+            return is_odd(scaled.y + shift_.y) ? colours_.first : colours_.second;
         }
         case surface_style::checker: {
             auto const place = scaled + shift_;
@@ -118,7 +111,7 @@ public:
                 auto const way = dot - p;
                 nearest = std::min(nearest, glm::dot(way, way));
             }
-            return nearest < 0.36f * feature_ * feature_ ? colours_.second : colours_.first;
+            return nearest < 0.38f * feature_ * feature_ ? colours_.second : colours_.first;
         }
         case surface_style::camo: {
             auto const place = scaled * 0.62f + shift_;
@@ -136,7 +129,6 @@ private:
     surface_style style_;
     palette colours_;
     float feature_;
-    glm::mat3 turn_{1};
     glm::vec3 shift_{0};
     std::uint32_t noise_ = 0;
     std::vector<glm::vec3> dots_;

@@ -286,7 +286,7 @@ def main():
         for group in optimizer.param_groups:
             group["lr"] = learning_rate(step, arguments.steps, arguments.rate)
         optimizer.step()
-        keep = min(0.9995 if step > 0.6 * arguments.steps else 0.999, (1 + step) / (10 + step))
+        keep = min(0.998, (1 + step) / (10 + step))
         with torch.no_grad():
             for name, value in masters.items():
                 averages[name].lerp_(value, 1 - keep)

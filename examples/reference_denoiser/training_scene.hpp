@@ -188,10 +188,10 @@ inline training_scene draw_training_scene(std::uint64_t seed, std::uint32_t numb
     eye.y = std::max(eye.y, 0.25f);
     drawn.scene.camera = look_at(eye, aim, fov);
 
-    // What the surfaces are painted with; a feature is 6 to 9 pixels of 64 at the middle of the scene.
+    // What the surfaces are painted with; a feature is 7 to 10 pixels of 64 at the middle of the scene.
     auto const with_ground = draw.chance(0.9f);
     auto const pixel_size = 2 * std::tan(fov / 2) * glm::distance(eye, drawn.target) / 64;
-    auto const feature = pixel_size * draw.uniform(6, 9);
+    auto const feature = pixel_size * draw.uniform(7, 10);
     auto const shared_colours = draw_palette(draw, drawn.colour, palette_set::training);
     auto const is_shared = draw.chance(0.5f);
     if (with_ground) {
