@@ -48,7 +48,7 @@ struct options {
     std::vector<std::string> prompts{"stripes", "checker", "dots"};
     std::size_t seeds = 3;
     std::size_t frames = 24;
-    std::size_t steps = 12;
+    std::size_t steps = 10;
     std::uint32_t size = 64;
     std::size_t threads = 0;
 };
