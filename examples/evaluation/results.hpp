@@ -59,6 +59,17 @@ inline std::vector<std::string> methods_of(std::span<run_figures const> runs, st
     return methods;
 }
 
+/// The first two lines of a Markdown table.
+inline std::string markdown_head(std::string const& first, std::span<table_column const> columns) {
+    std::string names = "| " + first + " |";
+    std::string rule = "|---|";
+    for (auto const& column : columns) {
+        names += " " + column.heading + " |";
+        rule += "---|";
+    }
+    return names + "\n" + rule + "\n";
+}
+
 } // namespace detail
 
 /// Mean and standard error of a measure over all runs of a method; none if no run has it.
@@ -101,15 +112,7 @@ inline std::string figure_text(std::optional<mean_and_error> const& figure) {
 inline std::string markdown_table(std::span<run_figures const> runs, std::span<std::string const> groups,
                                   std::span<table_column const> columns) {
     std::ostringstream text;
-    text << "| Method |";
-    for (auto const& column : columns) {
-        text << ' ' << column.heading << " |";
-    }
-    text << "\n|---|";
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        text << "---|";
-    }
-    text << '\n';
+    text << detail::markdown_head("Method", columns);
     for (auto const& method : detail::methods_of(runs, groups)) {
         text << "| " << method << " |";
         for (auto const& column : columns) {
@@ -125,15 +128,7 @@ inline std::string markdown_table(std::span<run_figures const> runs, std::span<s
 inline std::string difference_table(std::span<run_figures const> runs, std::string const& reference,
                                     std::span<std::string const> groups, std::span<table_column const> columns) {
     std::ostringstream text;
-    text << "| " << reference << " minus |";
-    for (auto const& column : columns) {
-        text << ' ' << column.heading << " |";
-    }
-    text << "\n|---|";
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        text << "---|";
-    }
-    text << '\n';
+    text << detail::markdown_head(reference + " minus", columns);
     for (auto const& method : detail::methods_of(runs, groups)) {
         if (method == reference) {
             continue;
