@@ -19,10 +19,10 @@ TEXT
 }
 
 # What the library and its examples are built from.
-demo_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev
+demo_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
     libassimp-dev libbullet-dev libopenexr-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev"
 evaluate_packages="$demo_packages gnuplot-nox"
-bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libbenchmark-dev"
+bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev libbenchmark-dev"
 # What its tests need besides.
 test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels"
 
@@ -115,6 +115,10 @@ evaluate() {
     say "Rendering and measuring"
     build/evaluate/examples/evaluate --out build/evaluation "$@"
     gnuplot -e "folder='build/evaluation'" examples/evaluation/consistency.gnuplot
+    say "Matching pixels with and without textures"
+    build/evaluate/examples/blender_maps walking_figure build/evaluation/blender_sequence 24 512
+    build/evaluate/examples/correspondence_tables --maps build/evaluation/blender_sequence \
+        --out build/evaluation/correspondence.md
     say "Tables, contact sheets, slices over time and the plot"
     ls build/evaluation
 }

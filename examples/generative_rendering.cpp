@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // [GR alg. 1] The program that does it all: an animated scene in, a stylised animation out.
 #include "support/guidance_source.hpp"
+#include "support/preflight_output.hpp"
 #include "support/progress_line.hpp"
 #include "support/render_options.hpp"
 #include "support/render_output.hpp"
@@ -39,10 +40,21 @@ reference_weights<float> load_weights(render_options const& options) {
 template <class Use>
 auto with_method(render_method method, Use const& use) {
     switch (method) {
-    case render_method::pix2video: return use(pix2video{});
-    case render_method::tokenflow: return use(tokenflow{});
-    default: return use(generative_rendering{});
+    case render_method::pix2video:
+        return use(pix2video{});
+    case render_method::tokenflow:
+        return use(tokenflow{});
+    default:
+        return use(generative_rendering{});
     }
+}
+
+/// What `use` makes of the maps that name surface points as the options say.
+template <class Use>
+auto with_canonical_maps(render_options const& options, guidance_source const& source, Use const& use) {
+    return options.correspondence.coordinates() == canonical_coordinates::position
+               ? use(to_position_view(source.guidance))
+               : use(to_uv_view(source.guidance.uv));
 }
 
 void run(render_options const& options, guidance_source const& source, reference_weights<float>& weights,
@@ -52,9 +64,10 @@ void run(render_options const& options, guidance_source const& source, reference
     network const phi(weights, weights.conditioning(to_view(nearness), options.prompt), loop);
 
     render_report report;
-    auto const z = with_method(options.method, [&](auto const& method) {
-        return render(method, phi, to_uv_view(source.guidance.uv), options.settings, report,
-                      progress_line(options.is_quiet), loop);
+    auto const z = with_canonical_maps(options, source, [&](auto const& maps) {
+        return with_method(options.method, [&](auto const& method) {
+            return render(method, phi, maps, options.settings, report, progress_line(options.is_quiet), loop);
+        });
     });
 
     auto const images = decoded(z);
@@ -70,6 +83,45 @@ void run(render_options const& options, guidance_source const& source, reference
         write_comparison(options.out, *earlier, frames,
                          method_name(render_method_names[static_cast<std::size_t>(options.method)]));
     }
+}
+
+/// The options that help with what a check finds.
+std::string advice(recommendation const& one) {
+    switch (one.kind) {
+    case recommendation_kind::mirrored:
+    case recommendation_kind::overlapping:
+    case recommendation_kind::tiled:
+    case recommendation_kind::degenerate:
+    case recommendation_kind::many_seams:
+        return one.sentence() + " (--canonical position)";
+    case recommendation_kind::texture_too_fine:
+    case recommendation_kind::texture_too_coarse:
+        return one.sentence() + " (--correspondence footprint)";
+    case recommendation_kind::low_coverage:
+        return one.sentence() + " (--keyframes)";
+    default:
+        return one.sentence();
+    }
+}
+
+/// Tells what the maps are good for, at the feature resolutions of the network's injected layers. The exit code.
+int check(render_options const& options, guidance_source const& source, reference_weights<float>& weights,
+          threaded_loop const& loop) {
+    // Any word will do: a check asks the network for its layers only.
+    auto const nearness = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
+    auto const word = weights.vocabulary ? weights.vocabulary->words().front() : std::string{};
+    network const phi(weights, weights.conditioning(to_view(nearness), word), loop);
+    std::vector<grid_extents> grids;
+    for (auto const& site : phi.sites()) {
+        if (options.settings.layers(site, 0) && std::find(grids.begin(), grids.end(), site.grid) == grids.end()) {
+            grids.push_back(site.grid);
+        }
+    }
+    auto const report = with_canonical_maps(options, source, [&](auto const& maps) {
+        return write_preflight(options.out, maps, grids, options.settings, loop, advice);
+    });
+    std::cout << text_of(report, advice) << "picture: " << (options.out / "preflight.png").string() << "\n";
+    return report.allows_run() ? 0 : 1;
 }
 
 /// Prints a sentence and gives the exit code.
@@ -92,13 +144,18 @@ int main(int argc, char** argv) {
         options = parse_render_options(argc, argv);
         loop = threaded_loop(options.threads);
         weights = load_weights(options);
-        if (weights->vocabulary) {
+        if (weights->vocabulary && !options.is_check) {
             prompt_rows(options.prompt, weights->vocabulary->words());
         }
         make_folder(options.out);
         source = load_guidance(options, loop);
         auto const frame_count = source.guidance.uv.frame_count();
         options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
+        options.settings.noise.rays = source.rays;
+        require_latent_grid(weights->config, {source.image.height / 2, source.image.width / 2});
+        if (options.is_check) {
+            return check(options, source, *weights, loop);
+        }
         require_render_settings(options.settings, frame_count);
         with_method(options.method, [&](auto const& method) { // which knows whether it draws keyframes
             return frames_to_denoise(options.settings, frame_count, method);
@@ -106,7 +163,6 @@ int main(int argc, char** argv) {
         if (!options.beside.empty()) {
             earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
         }
-        require_latent_grid(weights->config, {source.image.height / 2, source.image.width / 2});
     } catch (no_run const& none) {
         return none.exit_code;
     } catch (std::invalid_argument const& error) {

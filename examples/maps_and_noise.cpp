@@ -4,8 +4,8 @@
 #include "support/contact_sheet.hpp"
 #include "support/pictures.hpp"
 
+#include <genrender/correspondence/footprint_map.hpp>
 #include <genrender/correspondence/reproject.hpp>
-#include <genrender/correspondence/texel_grid.hpp>
 #include <genrender/guidance/rasterizer.hpp>
 #include <genrender/noise/initial_noise.hpp>
 
@@ -44,7 +44,7 @@ private:
 
 // Correlation between the noise of frames that are `apart`, over all pixels that show an object: of pixels that show
 // the same surface point, or of pixels at the same place on the screen.
-double correlation_of(latents<float> const& z, texel_grid const& map, std::uint32_t apart, bool along_surfaces) {
+double correlation_of(latents<float> const& z, footprint_map<2> const& map, std::uint32_t apart, bool along_surfaces) {
     correlation pairs;
     auto const width = map.grid().width;
     for (std::uint32_t i = apart; i < z.shape()[0]; ++i) {
@@ -76,24 +76,32 @@ int main(int argc, char** argv) try {
     auto const guidance = rasterize(scenes::make_scene("walking_figure", 12), {256, 256});
     auto const UV = to_uv_view(guidance.uv);
     grid_extents const grid{32, 32};
-    texel_grid const map(UV, grid);
+    footprint_map const map(UV, grid);
     std::vector<frame_index> frames;
     for (std::uint32_t i = 0; i < UV.frame_count(); ++i) {
         frames.push_back({i});
     }
 
-    // A texel is about as wide as a latent pixel, so pixels that show the same surface point share about every second
-    // value.
-    std::vector<std::pair<std::string, noise_kind>> const kinds{
-        {"uv", noise_kind::uv}, {"fixed", noise_kind::fixed}, {"independent", noise_kind::independent}};
+    // UV noise moves with the surfaces. Read as a whole it is white in every frame; read by the nearest texel, as the
+    // paper has it, it repeats values in neighbouring pixels.
+    struct kind_of_noise {
+        std::string name;
+        noise_kind kind;
+        noise_reading reading;
+    };
+    std::vector<kind_of_noise> const kinds{{"uv", noise_kind::uv, noise_reading::surface},
+                                           {"uv_nearest_texel", noise_kind::uv, noise_reading::nearest_texel},
+                                           {"fixed", noise_kind::fixed, {}},
+                                           {"independent", noise_kind::independent, {}}};
     std::vector<latents<float>> noises;
     std::vector<double> table;
     std::printf("Correlation of noise between frames   same surface point            same place on the screen\n"
                 "frames apart                              1       3       6             1       3       6\n");
-    for (auto const& [name, kind] : kinds) {
+    for (auto const& [name, kind, reading] : kinds) {
         auto& z = noises.emplace_back(latents<float>::from_shape({frames.size(), 4, grid.height, grid.width}));
         noise_settings settings;
         settings.kind = kind;
+        settings.reading = reading;
         initial_noise(to_view(z), UV, frames, settings);
         std::printf("%-34s", name.c_str());
         for (auto const along_surfaces : {true, false}) {
@@ -116,7 +124,7 @@ int main(int argc, char** argv) try {
         write_png(folder / "depth.png", contact_sheet(depth_pictures(guidance.depth), sheet));
         sheet.enlargement = 8;
         for (std::size_t k = 0; k < kinds.size(); ++k) {
-            write_png(folder / ("noise_" + kinds[k].first + ".png"), contact_sheet(noise_pictures(noises[k]), sheet));
+            write_png(folder / ("noise_" + kinds[k].name + ".png"), contact_sheet(noise_pictures(noises[k]), sheet));
         }
         std::printf("Pictures are in %s\n", folder.c_str());
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Your own correspondence in place of the texel grid: points of a rolling ball in its rest pose, without any texture.
+// Your own correspondence in place of the library's: points of a rolling ball in its rest pose, without any texture.
 #include <genrender/guidance/uv_maps.hpp>
 #include <genrender/models/reference_network.hpp>
 #include <genrender/pipeline/render.hpp>
@@ -101,16 +101,16 @@ int main() try {
     settings.steps = 2;
     settings.keyframes.count = 2;
     render_report by_rest_pose;
-    render_report by_texel_grid;
+    render_report by_footprints;
     auto const make_map = [&](grid_extents grid) { return rest_pose_map{ball, grid}; };
     render(network, UV, make_map, settings, by_rest_pose);
-    render(network, UV, settings, by_texel_grid);
+    render(network, UV, settings, by_footprints);
 
-    std::printf("Tokens of the ball that some keyframe shows, too:\n  feature map   rest pose   texel grid\n");
+    std::printf("Tokens of the ball that some keyframe shows, too:\n  feature map   rest pose   footprints\n");
     for (auto const& [grid, count] : by_rest_pose.coverage()) {
-        auto const texels = by_texel_grid.coverage().at(grid);
+        auto const footprints = by_footprints.coverage().at(grid);
         std::printf("  %3zu x %-3zu    %8.1f %%   %8.1f %%\n", grid.height, grid.width, 100 * count.share(),
-                    100 * texels.share());
+                    100 * footprints.share());
         require_value(count.share() > 0.8, "your_own_correspondence", "coverage", count.share(), "above 0.8");
     }
 } catch (std::exception const& error) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where UV, object and depth lie in an EXR file: Blender's render passes, or four plainly named channels.
+// Where UV, object, depth and rest position lie in an EXR file: Blender's render passes, or four plainly named channels.
 #pragma once
 
 #include "exr_file.hpp"
@@ -27,7 +27,8 @@ struct exr_map_channels {
     exr_channel v;
     exr_channel object;
     exr_channel depth;
-    std::optional<exr_channel> alpha; ///< 0 where no surface was hit
+    std::optional<exr_channel> alpha;  ///< 0 where no surface was hit
+    std::vector<exr_channel> position; ///< x, y and z of the surface point; empty if the file has none
 };
 
 namespace detail {
@@ -74,6 +75,31 @@ inline std::map<std::string, std::size_t> blender_layers(exr_file const& file) {
         }
     }
     return layers;
+}
+
+/// Canonical positions: those of the rest pose, as a renderer's own output variable, or Blender's Position pass, which is
+/// where points are in the world and so canonical only for what stands still.
+inline std::vector<exr_channel> find_position(exr_file const& file, std::string const& layer, exr_layout layout) {
+    using names = std::array<std::string, 3>;
+    auto const prefix = layer.empty() ? layer : layer + ".";
+    std::vector<names> const spellings =
+        layout == exr_layout::plain
+            ? std::vector<names>{{"x", "y", "z"}}
+            : std::vector<names>{{prefix + "Rest.X", prefix + "Rest.Y", prefix + "Rest.Z"},
+                                 {prefix + "Rest.R", prefix + "Rest.G", prefix + "Rest.B"},
+                                 {prefix + "Position.X", prefix + "Position.Y", prefix + "Position.Z"}};
+    for (auto const& spelling : spellings) {
+        std::vector<exr_channel> channels;
+        for (auto const& name : spelling) {
+            if (auto const* const channel = file.find(name)) {
+                channels.push_back(*channel);
+            }
+        }
+        if (channels.size() == spelling.size()) {
+            return channels;
+        }
+    }
+    return {};
 }
 
 inline void require_float(exr_file const& file, exr_channel const& channel) {
@@ -134,8 +160,12 @@ inline exr_map_channels find_map_channels(exr_file const& file, std::string cons
         }
     }
 
+    found.position = detail::find_position(file, found.layer, found.layout);
     for (auto const* const channel : {&found.u, &found.v, &found.depth}) {
         detail::require_float(file, *channel);
+    }
+    for (auto const& channel : found.position) {
+        detail::require_float(file, channel);
     }
     return found;
 }

@@ -5,6 +5,7 @@
 #include "exr_layout.hpp"
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/tensor.hpp>
 #include <genrender/guidance/depth_maps.hpp>
 #include <genrender/guidance/uv_convention.hpp>
 #include <genrender/guidance/uv_maps.hpp>
@@ -36,7 +37,9 @@ struct exr_sequence_options {
 /// The maps of a folder, and what its reader noticed.
 struct exr_sequence {
     uv_maps uv;
-    depth_maps depth;                         ///< covered where `uv` is
+    depth_maps depth; ///< covered where `uv` is
+    /// Canonical positions [frames, height, width, 3]; without frames unless every file has them.
+    tensor<float, 4> position = tensor<float, 4>::from_shape({0, 0, 0, 3});
     std::vector<std::filesystem::path> files; ///< the file of each frame
     std::vector<std::string> notes;           ///< sentences about what is readable and may not be meant
 };
@@ -118,6 +121,11 @@ public:
         if (channels.alpha) {
             wanted.push_back(*channels.alpha);
         }
+        auto const first_position = wanted.size();
+        auto const has_position = frame < result_.position.shape()[0];
+        if (has_position) {
+            wanted.insert(wanted.end(), channels.position.begin(), channels.position.end());
+        }
         auto const planes = file.planes(wanted, 0.0f);
         auto const grid = file.grid();
         for (std::uint32_t row = 0; row < grid.height; ++row) {
@@ -148,6 +156,12 @@ public:
                 result_.uv.uv(frame, row, column, 0) = u;
                 result_.uv.uv(frame, row, column, 1) = v;
                 result_.uv.object(frame, row, column) = static_cast<std::uint32_t>(index);
+                for (std::size_t axis = 0; has_position && axis < 3; ++axis) {
+                    auto const coordinate = planes[first_position + axis][i] / alpha;
+                    require(std::isfinite(coordinate), file, row, column, "position is not a finite number",
+                            "coordinates where a surface is covered");
+                    result_.position(frame, row, column, axis) = coordinate;
+                }
                 result_.uv.coverage(frame, row, column) = 1;
                 result_.depth.depth(frame, row, column) = depth;
                 result_.depth.coverage(frame, row, column) = 1;
@@ -229,6 +243,11 @@ inline exr_sequence load_exr_sequence(std::filesystem::path const& folder, exr_s
             first = channels;
             result.uv = uv_maps(result.files.size(), file.grid());
             result.depth = depth_maps(result.files.size(), file.grid());
+            if (!channels.position.empty()) {
+                result.position =
+                    tensor<float, 4>::from_shape({result.files.size(), file.grid().height, file.grid().width, 3});
+                result.position.fill(0);
+            }
         }
         auto const expected = result.uv.grid();
         if (file.grid() != expected) {
@@ -240,9 +259,20 @@ inline exr_sequence load_exr_sequence(std::filesystem::path const& folder, exr_s
             throw file_error(file.path().string() + ": has other channel names (" + channels.u.name + "), expected " +
                              first.u.name + " as in " + result.files.front().filename().string());
         }
+        if (channels.position.size() != first.position.size()) {
+            throw file_error(file.path().string() +
+                             (channels.position.empty() ? ": has no positions" : ": has positions") + ", expected " +
+                             (first.position.empty() ? "none" : first.position.front().name) + " as in " +
+                             result.files.front().filename().string());
+        }
         reader.read(frame, file, channels);
     }
     reader.finish(folder, first.layout);
+    if (!first.position.empty() && first.position.front().name.ends_with("Position.X")) {
+        result.notes.push_back(
+            "Positions are Blender's Position pass, which is where points are in the world: right as "
+            "canonical coordinates for what stands still only. Write rest positions as Rest.X, Y, Z.");
+    }
     adopt_uv(
         to_view(result.uv.uv), to_view(result.uv.coverage),
         {.v_upwards = options.v_upwards.value_or(first.layout == exr_layout::blender), .outside = options.outside});

@@ -6,12 +6,14 @@
 #include "output_file.hpp"
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/tensor.hpp>
 #include <genrender/guidance/depth_maps.hpp>
 #include <genrender/guidance/uv_maps.hpp>
 
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -41,7 +43,8 @@ struct exr_output_plane {
 
 /// The channels of one frame. Background is what Cycles writes (UV 0, alpha 0, depth 1e10, index 0) or u v 0, id -1,
 /// depth 1e10.
-inline std::vector<exr_output_plane> exr_planes_of(uv_maps const& uv, depth_maps const& depth, std::size_t frame,
+inline std::vector<exr_output_plane> exr_planes_of(uv_maps const& uv, depth_maps const& depth,
+                                                   tensor<float, 4> const& position, std::size_t frame,
                                                    exr_write_options const& options) {
     auto const size = uv.grid().size();
     auto const is_plain = options.layout == exr_layout::plain;
@@ -58,6 +61,13 @@ inline std::vector<exr_output_plane> exr_planes_of(uv_maps const& uv, depth_maps
     if (!is_plain) {
         planes.push_back(plane("UV", "A", "", 0));
     }
+    auto const first_position = planes.size();
+    auto const has_position = frame < position.shape()[0];
+    if (has_position) {
+        planes.push_back(plane("Rest", "X", "x", 0));
+        planes.push_back(plane("Rest", "Y", "y", 0));
+        planes.push_back(plane("Rest", "Z", "z", 0));
+    }
     auto const v_upwards = options.v_upwards.value_or(!is_plain);
     auto const begin = frame * size;
     for (std::size_t i = 0; i < size; ++i) {
@@ -71,6 +81,9 @@ inline std::vector<exr_output_plane> exr_planes_of(uv_maps const& uv, depth_maps
         planes[3].values[i] = depth.depth.data()[begin + i];
         if (!is_plain) {
             planes[4].values[i] = 1;
+        }
+        for (std::size_t axis = 0; has_position && axis < 3; ++axis) {
+            planes[first_position + axis].values[i] = position.data()[3 * (begin + i) + axis];
         }
     }
     return planes;
@@ -117,12 +130,19 @@ inline void write_exr_planes(std::filesystem::path const& path, std::vector<exr_
 } // namespace detail
 
 /// Writes one 32-bit float EXR file a frame into `folder` (made if missing), named by number, each whole or not at
-/// all, and returns their paths; `load_exr_sequence` gives the same maps back (v to the rounding of 1 - v). Throws
+/// all, and returns their paths; rest positions [frames, height, width, 3] too, unless `position` has no frames;
+/// `load_exr_sequence` gives the same maps back (v to the rounding of 1 - v). Throws
 /// shape_error if the maps differ in extents, value_error if they differ in coverage, a covered depth is not in (0,
 /// 1e10) or an object index is 2^24 or more (a float cannot hold it), file_error if the folder cannot be written.
-inline std::vector<std::filesystem::path> write_exr_maps(std::filesystem::path const& folder, uv_maps const& uv,
-                                                         depth_maps const& depth,
-                                                         exr_write_options const& options = {}) {
+inline std::vector<std::filesystem::path>
+write_exr_maps(std::filesystem::path const& folder, uv_maps const& uv, depth_maps const& depth,
+               exr_write_options const& options = {},
+               tensor<float, 4> const& position = tensor<float, 4>::from_shape({0, 0, 0, 3})) {
+    if (position.shape()[0] > 0) {
+        auto const& e = uv.coverage.shape();
+        require_extents("write_exr_maps", "position", position.shape(),
+                        std::array<std::size_t, 4>{e[0], e[1], e[2], 3});
+    }
     require_extents("write_exr_maps", "depth.depth", depth.depth.shape(), uv.coverage.shape());
     require_extents("write_exr_maps", "depth.coverage", depth.coverage.shape(), uv.coverage.shape());
     for (std::size_t i = 0; i < uv.coverage.size(); ++i) {
@@ -141,7 +161,7 @@ inline std::vector<std::filesystem::path> write_exr_maps(std::filesystem::path c
         auto number = std::to_string(options.first_number + frame);
         number.insert(0, number.size() < 4 ? 4 - number.size() : 0, '0');
         files.push_back(folder / (number + ".exr"));
-        detail::write_exr_planes(files.back(), detail::exr_planes_of(uv, depth, frame, options), uv.grid(),
+        detail::write_exr_planes(files.back(), detail::exr_planes_of(uv, depth, position, frame, options), uv.grid(),
                                  options.multipart && options.layout == exr_layout::blender);
     }
     return files;

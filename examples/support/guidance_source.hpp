@@ -10,11 +10,19 @@
 #include <genrender/guidance/rasterizer.hpp>
 #include <genrender/guidance/uv_convention.hpp>
 #include <genrender/guidance/uv_report.hpp>
+#include <genrender/noise/background_noise.hpp>
+#include <genrender/scene/camera.hpp>
+
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
 
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +32,7 @@ namespace genrender::examples {
 /// Guidance maps, the extents of the frames to render from them, and what is worth knowing about them.
 struct guidance_source {
     rendered_guidance guidance;
+    environment_rays rays; ///< of the scene's cameras; none with maps
     grid_extents image;
     std::vector<std::string> notes;
 };
@@ -43,6 +52,25 @@ Tensor first_frames(Tensor const& all, std::size_t count) {
     return result;
 }
 
+/// The directions of the cameras' pixels.
+template <animation Animation>
+environment_rays rays_of(Animation const& scene, grid_extents grid) {
+    struct view {
+        image_plane plane;
+        glm::dmat3 to_world;
+    };
+    std::vector<view> views;
+    for (std::uint32_t i = 0; i < scene.frame_count(); ++i) {
+        auto const eye = scene.frame({i}).camera;
+        views.push_back({image_plane(eye, grid), glm::dmat3(glm::inverse(eye.view))});
+    }
+    return {[views = std::move(views)](frame_index i, double row, double column) {
+        auto const& [plane, to_world] = views[i.value];
+        auto const direction = to_world * glm::dvec3(plane.x_of(column), plane.y_of(row), -1);
+        return std::array<double, 3>{direction.x, direction.y, direction.z};
+    }};
+}
+
 /// Whole frames of `size` pixels of height that show maps of `grid`. Throws value_error if pixels would be cut.
 inline grid_extents image_extents(grid_extents grid, std::size_t size) {
     require_value(size <= grid.height && grid.height % size == 0 && grid.width % (grid.height / size) == 0, "--size",
@@ -53,7 +81,7 @@ inline grid_extents image_extents(grid_extents grid, std::size_t size) {
 inline void add_notes_on(std::vector<std::string>& notes, uv_report const& report) {
     if (report.out_of_range > 0) {
         notes.push_back(std::to_string(report.out_of_range) + " of " + std::to_string(report.covered) +
-                        " covered pixels have UVs outside [0, 1]; their texture is taken to repeat");
+                        " covered pixels have UVs outside [0, 1]");
     }
     if (!report.empty_frames.empty()) {
         notes.push_back(std::to_string(report.empty_frames.size()) + " frames show no object");
@@ -70,33 +98,54 @@ guidance_source load_guidance(render_options const& options, Loop const& loop) {
     auto const frames = options.frames.value_or(24);
     source.image = {options.size, options.size};
     grid_extents const map{detail::map_pixels * options.size, detail::map_pixels * options.size};
-    // Maps of 18 bytes a pixel; a machine that has not as much would be brought down by its own kindness.
-    auto const bytes =
-        static_cast<double>(frames) * static_cast<double>(map.height) * static_cast<double>(map.width) * 18;
+    auto const positions = options.correspondence.coordinates() == canonical_coordinates::position ? position_pass::on
+                                                                                                   : position_pass::off;
+    // Maps of 18 bytes a pixel, 30 with rest positions; a machine that has not as much would be brought down by its own kindness.
+    auto const bytes = static_cast<double>(frames) * static_cast<double>(map.height) * static_cast<double>(map.width) *
+                       (positions == position_pass::on ? 30 : 18);
     auto const memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     require_value(!options.maps.empty() || bytes < memory / 2, "--size", "maps", std::to_string(bytes / 1e9) + " GB",
                   "less than half of the machine's memory: fewer --frames or a smaller --size");
+    auto const draw = [&](auto const& animation) {
+        source.guidance = rasterize(animation, map, loop, positions);
+        source.rays = detail::rays_of(animation, map);
+    };
     if (!options.scene.empty()) {
-        source.guidance = rasterize(scenes::make_scene(options.scene, frames), map, loop);
+        draw(scenes::make_scene(options.scene, frames));
     } else if (!options.model.empty()) {
         auto const model = load_model(options.model, {.frames = frames});
         source.notes = lines_of(model.report());
-        source.guidance = rasterize(model, map, loop);
+        draw(model);
     } else {
+        require_value(options.settings.noise.background != background_noise::environment, "--background", "environment",
+                      "of EXR maps", "fixed or independent: cameras come with --scene and --model");
         auto sequence = load_exr_sequence(options.maps);
         source.notes = std::move(sequence.notes);
-        source.guidance = {std::move(sequence.uv), std::move(sequence.depth)};
-        auto& [uv, depth] = source.guidance;
+        require_value(positions == position_pass::off || sequence.position.shape()[0] > 0, "--canonical", "position",
+                      "not in the EXR files", "channels LAYER.Rest.X, Y and Z (or Blender's Position pass)");
+        source.guidance.uv = std::move(sequence.uv);
+        source.guidance.depth = std::move(sequence.depth);
+        auto& uv = source.guidance.uv;
+        auto& depth = source.guidance.depth;
         auto const count = std::min(options.frames.value_or(uv.frame_count()), uv.frame_count());
         uv.uv = detail::first_frames(uv.uv, count);
         uv.object = detail::first_frames(uv.object, count);
         uv.coverage = detail::first_frames(uv.coverage, count);
         depth.depth = detail::first_frames(depth.depth, count);
         depth.coverage = uv.coverage;
+        if (positions == position_pass::on) {
+            source.guidance.position = detail::first_frames(sequence.position, count);
+        }
         source.image = detail::image_extents(uv.grid(), options.size);
     }
     detail::add_notes_on(source.notes, inspect(to_uv_view(source.guidance.uv)));
-    adopt_uv(to_view(source.guidance.uv.uv), to_view(source.guidance.uv.coverage), {.outside = uv_outside::wrap});
+    // Texels have nowhere else to go; a footprint tells the tiles of a repeated texture apart.
+    auto const& settings = options.settings;
+    auto const has_texels = settings.correspondence.kind == correspondence_kind::texel_grid ||
+                            settings.noise.reading != noise_reading::surface;
+    if (has_texels && !options.is_check) { // a check tells of what it finds
+        adopt_uv(to_view(source.guidance.uv.uv), to_view(source.guidance.uv.coverage), {.outside = uv_outside::wrap});
+    }
     return source;
 }
 

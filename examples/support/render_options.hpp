@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../scenes/scenes.hpp"
+#include "correspondence_options.hpp"
 
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
@@ -38,7 +39,7 @@ struct render_options {
     std::filesystem::path maps;
     std::string prompt;
     std::filesystem::path out;
-    std::filesystem::path beside; ///< an earlier run to compare with
+    std::filesystem::path beside;                                  ///< an earlier run to compare with
     std::string weights = GENRENDER_REFERENCE_DENOISER "/weights"; ///< a folder, or `random`
     std::optional<std::size_t> frames;
     std::optional<std::size_t> keyframes;
@@ -47,6 +48,8 @@ struct render_options {
     std::uint64_t seed = 0;
     render_method method = render_method::generative_rendering;
     bool is_quiet = false;
+    bool is_check = false; ///< tells what the maps are good for and renders nothing
+    correspondence_options correspondence;
     render_settings<float> settings;
 };
 
@@ -98,9 +101,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(not_empty)
         ->type_name("DIR");
     input->require_option(1);
-    app.add_option("--prompt", options.prompt,
-                   "what it shall look like, in the words: " + detail::listed(prompt_words, " "))
-        ->required();
+    auto const* const prompt_option = app.add_option(
+        "--prompt", options.prompt,
+        "what it shall look like, in the words: " + detail::listed(prompt_words, " ") + " (not needed with --check)");
     app.add_option("--out", options.out, "folder for frames, maps, animation, contact sheet and report")
         ->required()
         ->check(not_empty)
@@ -143,12 +146,13 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(one_of(names_type(render_method_names.begin(), render_method_names.end())))
         ->type_name("NAME");
     std::string noise;
-    auto* const noise_option = app.add_option("--noise", noise,
-                                              "initial noise: uv (moves with the surfaces), fixed (sticks to "
-                                              "the screen) or independent; uv, for per_frame independent, for the other "
-                                              "baselines fixed")
-                                   ->check(one_of(names_type{"uv", "fixed", "independent"}))
-                                   ->type_name("KIND");
+    auto* const noise_option =
+        app.add_option("--noise", noise,
+                       "initial noise: uv (moves with the surfaces), fixed (sticks to "
+                       "the screen) or independent; uv, for per_frame independent, for the other "
+                       "baselines fixed")
+            ->check(one_of(names_type{"uv", "fixed", "independent"}))
+            ->type_name("KIND");
     auto* const ours = app.add_option_group("Of the method", "not with a baseline, but for --keyframes of tokenflow");
     float alpha = 0.7f;
     std::size_t keyframes = 0;
@@ -167,6 +171,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     ours->add_flag("--no-post", no_post, "no post-attention injection (eq. 6)");
     ours->add_flag("--no-adain", no_adain, "no latent normalisation");
 
+    options.correspondence.add_to(app);
+    app.add_flag("--check", options.is_check,
+                 "look before you run: what the maps are good for, as preflight.txt, .json and .png in OUT");
     app.add_option("--weights", options.weights,
                    "the denoiser, a folder in diffusers' layout (the trained reference denoiser), or the word\n"
                    "random: the same network without training")
@@ -192,6 +199,10 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         if (options.method != render_method::generative_rendering && foreign > 0) {
             throw CLI::ValidationError("--method", method + " has no keyframes, injection or normalisation to set");
         }
+        if (prompt_option->count() == 0 && !options.is_check) {
+            throw CLI::RequiredError("--prompt");
+        }
+        options.correspondence.apply_to(settings);
     } catch (CLI::ParseError const& error) {
         throw no_run{app.exit(error) == 0 ? 0 : 2};
     }

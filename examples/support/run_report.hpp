@@ -58,8 +58,7 @@ inline earlier_run load_earlier_run(std::filesystem::path const& earlier, std::f
     auto const path = earlier / "report.json";
     std::ifstream stream(path);
     auto const json = nlohmann::json::parse(stream, nullptr, false);
-    if (!stream || !json.is_object() || !json.contains("method") ||
-        !json["method"].is_string()) {
+    if (!stream || !json.is_object() || !json.contains("method") || !json["method"].is_string()) {
         throw file_error(path.string() + ": is no report of a run, expected the folder of an earlier one");
     }
     require_value(!std::filesystem::equivalent(earlier, out), "--beside", "folder", earlier.string(),
@@ -98,10 +97,18 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["sampler"] = samplers[static_cast<std::size_t>(settings.method)];
     told["seed"] = options.seed;
     told["noise"] = noises[static_cast<std::size_t>(settings.noise.kind)];
+    auto const& matched = options.correspondence;
+    if (settings.noise.kind == noise_kind::uv) {
+        told["noise_reading"] = matched.noise;
+        told["background"] = matched.background;
+    }
     if (options.method == render_method::generative_rendering || options.method == render_method::tokenflow) {
         told["keyframes"] = settings.keyframes.count;
     }
     if (options.method == render_method::generative_rendering) {
+        told["canonical"] = matched.canonical;
+        told["correspondence"] = matched.correspondence;
+        told["average"] = matched.average;
         told["alpha"] = settings.alpha(0, {});
         told["pre_attention"] = settings.pre_attention;
         told["post_attention"] = settings.post_attention;

@@ -23,6 +23,7 @@
 #include <genrender/scene/uv_overlap.hpp>
 
 #include <genrender/guidance/background_mask.hpp>
+#include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 #include <genrender/guidance/depth_maps.hpp>
 #include <genrender/guidance/frame_rasterizer.hpp>
@@ -34,15 +35,24 @@
 
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
+#include <genrender/correspondence/footprint_map.hpp>
+#include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/reproject.hpp>
+#include <genrender/correspondence/sample_tree.hpp>
+#include <genrender/correspondence/surface_correspondence.hpp>
+#include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
 #include <genrender/correspondence/texture_projection.hpp>
 #include <genrender/correspondence/texture_resolution.hpp>
 #include <genrender/correspondence/visible_texels.hpp>
 
+#include <genrender/noise/background_noise.hpp>
+#include <genrender/noise/brownian_bridge.hpp>
 #include <genrender/noise/initial_noise.hpp>
+#include <genrender/noise/noise_tree.hpp>
 #include <genrender/noise/noise_texture.hpp>
+#include <genrender/noise/surface_noise.hpp>
 
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/attention/attention_processor.hpp>
@@ -96,6 +106,21 @@
 #include <genrender/baselines/propagation_plan.hpp>
 #include <genrender/baselines/token_propagation.hpp>
 #include <genrender/baselines/tokenflow.hpp>
+
+#include <genrender/inspection/coordinate_levels.hpp>
+#include <genrender/inspection/finite_maps.hpp>
+#include <genrender/inspection/frame_inspection.hpp>
+#include <genrender/inspection/grid_check.hpp>
+#include <genrender/inspection/map_check.hpp>
+#include <genrender/inspection/map_recommendations.hpp>
+#include <genrender/inspection/object_check.hpp>
+#include <genrender/inspection/pixel_check.hpp>
+#include <genrender/inspection/pixel_lattice.hpp>
+#include <genrender/inspection/preflight.hpp>
+#include <genrender/inspection/preflight_text.hpp>
+#include <genrender/inspection/recommendation.hpp>
+#include <genrender/inspection/screen_search.hpp>
+#include <genrender/inspection/texture_tiles.hpp>
 
 #include <genrender/evaluation/contrast.hpp>
 #include <genrender/evaluation/correspondence_error.hpp>

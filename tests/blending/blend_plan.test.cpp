@@ -8,6 +8,7 @@
 #include "../support/shifted_strip.hpp"
 
 #include <genrender/blending/mix_rows.hpp>
+#include <genrender/correspondence/footprint_map.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 
@@ -35,6 +36,24 @@ stack<Real, 2> planned(Map const& map, std::vector<frame_index> const& KF, frame
     }
     mix_rows(F.view(), F_KF, plan.rows(), 1);
     return F;
+}
+
+/// A strip whose frame i shows everything with quality 1 + 2 i, or with one of which nothing is known.
+struct graded_strip : testing::shifted_strip {
+    bool is_known = true;
+    double quality_at(frame_index i, point_type) const { return is_known ? 1.0 + 2 * i.value : 0.0; }
+};
+
+static_assert(graded_correspondence_map<graded_strip>);
+static_assert(!graded_correspondence_map<testing::shifted_strip>);
+
+/// The weights of each token's sources, in the drawn order.
+std::vector<std::vector<double>> weights_of(blend_plan<double> const& plan) {
+    std::vector<std::vector<double>> weights;
+    for (std::size_t t = 0; t + 1 < plan.offsets.size(); ++t) {
+        weights.emplace_back(plan.weights.begin() + plan.offsets[t], plan.weights.begin() + plan.offsets[t + 1]);
+    }
+    return weights;
 }
 
 /// Three of six frames in an order that is not sorted.
@@ -172,6 +191,71 @@ TEST_SUITE("blending/blend_plan") {
                 sum += plan.weights[e];
             }
             CHECK(sum == doctest::Approx(plan.rows().is_covered(t) ? 1.0 : 0.0));
+        }
+    }
+    TEST_CASE("an average by quality mixes keyframes by how well they see the point") {
+        // Frame 0 shows the points 0, 1 and 2; keyframes in the drawn order: 0 of quality 1, then 1 of quality 3.
+        graded_strip const strip{{2, 3}};
+        std::vector<frame_index> const KF{{0}, {1}};
+        using rows = std::vector<std::vector<double>>;
+        auto const by_quality = [&](double share) {
+            return weights_of(make_blend_plan<double>(strip, KF, {0}, share, texel_average::by_quality));
+        };
+        CHECK(by_quality(0) == rows{{1}, {0.25, 0.75}, {0.25, 0.75}});
+        CHECK(by_quality(0.5) == rows{{1}, {0.625, 0.375}, {0.625, 0.375}});
+        CHECK(by_quality(1) == rows{{1}, {1, 0}, {1, 0}});
+        // The plain average does not ask.
+        CHECK(weights_of(make_blend_plan<double>(strip, KF, {0}, 0)) == rows{{1}, {0.5, 0.5}, {0.5, 0.5}});
+    }
+    TEST_CASE("where no quality is known or told the average by quality is the plain one") {
+        std::vector<frame_index> const KF{{2}, {0}};
+        graded_strip const unknown{{4, 3}, false};
+        testing::shifted_strip const untold{4, 3};
+        auto const plain = make_blend_plan<double>(untold, KF, {1});
+        for (auto const& plan : {make_blend_plan<double>(unknown, KF, {1}, 0.5, texel_average::by_quality),
+                                 make_blend_plan<double>(untold, KF, {1}, 0.5, texel_average::by_quality)}) {
+            CHECK(plan.offsets == plain.offsets);
+            CHECK(plan.sources == plain.sources);
+            CHECK(plan.weights == plain.weights);
+        }
+        CHECK(plain.sources.size() == 4);
+    }
+    TEST_CASE("a keyframe that sees a surface twice as large has four times the share") {
+        // Frame 0 and frame 1 show one plane, frame 1 its upper left quarter.
+        uv_maps maps(2, {16, 16});
+        maps.coverage.fill(1);
+        for (std::size_t i = 0; i < 2; ++i) {
+            auto const scale = i == 0 ? 1.0F / 16 : 0.5F / 16;
+            for (std::size_t row = 0; row < 16; ++row) {
+                for (std::size_t column = 0; column < 16; ++column) {
+                    maps.uv(i, row, column, 0) = (static_cast<float>(column) + 0.5F) * scale;
+                    maps.uv(i, row, column, 1) = (static_cast<float>(row) + 0.5F) * scale;
+                }
+            }
+        }
+        footprint_map const map(to_uv_view(maps), {4, 4});
+        auto const plan =
+            make_blend_plan<double>(map, std::vector<frame_index>{{0}, {1}}, {1}, 0, texel_average::by_quality);
+        for (auto const& weights : weights_of(plan)) {
+            REQUIRE(weights.size() == 2);
+            CHECK(weights[0] == doctest::Approx(0.2));
+            CHECK(weights[1] == doctest::Approx(0.8));
+        }
+        CHECK(plan.covered_count() == 16);
+    }
+    TEST_CASE("by quality the plan's rows still sum to 1 and never fall below 0") {
+        auto const maps = testing::random_scene(4, 4, {48, 48}, 3);
+        footprint_map const map(to_uv_view(maps), {12, 12});
+        auto const plan =
+            make_blend_plan<double>(map, std::vector<frame_index>{{3}, {1}, {2}}, {0}, 0.25, texel_average::by_quality);
+        CHECK(plan.covered_count() > 50);
+        for (auto const& weights : weights_of(plan)) {
+            double sum = 0;
+            for (auto const weight : weights) {
+                CHECK(weight >= 0);
+                sum += weight;
+            }
+            CHECK(sum == doctest::Approx(weights.empty() ? 0.0 : 1.0));
         }
     }
     TEST_CASE("arguments that do not fit are refused by name") {

@@ -264,4 +264,27 @@ TEST_SUITE("core/random") {
         CHECK(std::abs(every_third - n / 3) < four_deviations);
         CHECK(uniform_below(1, 23, random_stream::test, {0, 0, 0}) == 0);
     }
+
+    TEST_CASE("four values of one draw are normal and independent") {
+        constexpr std::uint32_t draws = 40000;
+        std::array<double, 4> means{};
+        std::array<std::array<double, 4>, 4> products{};
+        for (std::uint32_t n = 0; n < draws; ++n) {
+            auto const values = four_normals_of(random_bits(9, random_stream::test, {n, 0, 0}));
+            for (std::size_t a = 0; a < 4; ++a) {
+                means[a] += values[a] / draws;
+                for (std::size_t b = 0; b < 4; ++b) {
+                    products[a][b] += values[a] * values[b] / draws;
+                }
+            }
+        }
+        for (std::size_t a = 0; a < 4; ++a) {
+            CHECK(std::abs(means[a]) < 4 / std::sqrt(double{draws}));
+            for (std::size_t b = 0; b < 4; ++b) {
+                CHECK(std::abs(products[a][b] - (a == b ? 1 : 0)) < 4 * std::sqrt((a == b ? 2.0 : 1.0) / draws));
+            }
+        }
+        // The ends of the bits are finite.
+        CHECK(std::abs(four_normals_of({0, 0, 0xFFFFFFFFU, 0xFFFFFFFFU})[0]) < 6.8);
+    }
 }

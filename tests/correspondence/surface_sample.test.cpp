@@ -2,10 +2,14 @@
 // [GR sec. 3.2] The sample that stands for a token.
 #include <genrender/correspondence/surface_sample.hpp>
 
+#include "../support/random_scene.hpp"
+
 #include <genrender/guidance/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
 using namespace genrender;
@@ -39,27 +43,23 @@ TEST_SUITE("correspondence/surface_sample") {
         CHECK(sample->uv[1] == 0.5f);
         CHECK(sample->object == object_index{5});
     }
-    TEST_CASE("the object with most pixels owns the cell and ties go to the lowest number") {
-        auto maps = full_frame();
-        maps.object(0, 0, 0) = 9;
-        maps.object(0, 0, 1) = 9;
-        maps.object(0, 1, 0) = 9;
-        CHECK(representative_sample(to_uv_view(maps), {0}, {2, 2}, {0})->object == object_index{9});
-        maps.object(0, 1, 0) = 5;
-        CHECK(representative_sample(to_uv_view(maps), {0}, {2, 2}, {0})->object == object_index{5});
-    }
-    TEST_CASE("a cell with more background than objects shows nothing") {
-        auto maps = full_frame();
-        maps.coverage(0, 0, 0) = 0;
-        maps.coverage(0, 0, 1) = 0;
-        CHECK(representative_sample(to_uv_view(maps), {0}, {2, 2}, {0}).has_value());
-        maps.coverage(0, 1, 0) = 0;
-        CHECK(!representative_sample(to_uv_view(maps), {0}, {2, 2}, {0}).has_value());
-    }
-    TEST_CASE("object 0 is an object") {
-        auto maps = full_frame();
-        maps.object.fill(0);
-        CHECK(representative_sample(to_uv_view(maps), {0}, {1, 1}, {0})->object == object_index{0});
+    TEST_CASE("[GR sec. 3.2] the sample is what the representative pixel shows") {
+        auto const maps = testing::random_scene(3, 2, {24, 32}, 3);
+        std::size_t shown = 0;
+        for (std::uint32_t t = 0; t < 48; ++t) {
+            auto const p = representative_pixel(to_uv_view(maps), {1}, {6, 8}, {t});
+            auto const sample = representative_sample(to_uv_view(maps), {1}, {6, 8}, {t});
+            REQUIRE(sample.has_value() == p.has_value());
+            if (p) {
+                CHECK(sample->at == *p);
+                CHECK(sample->object == object_index{maps.object(1, p->row, p->column)});
+                CHECK(sample->uv[0] == maps.uv(1, p->row, p->column, 0));
+                CHECK(sample->uv[1] == maps.uv(1, p->row, p->column, 1));
+                ++shown;
+            }
+        }
+        CHECK(shown > 10);
+        CHECK(shown < 48);
     }
     TEST_CASE("texel centres lie at one half and coordinates outside go to the border") {
         auto const T = texture_resolution::same(4);
@@ -74,7 +74,7 @@ TEST_SUITE("correspondence/surface_sample") {
     TEST_CASE("grids that do not divide the maps are refused by name") {
         auto const maps = full_frame();
         CHECK_THROWS_WITH_AS(representative_sample(to_uv_view(maps), {0}, {3, 2}, {0}),
-                             "representative_sample: grid is [3, 2], expected extents that divide the maps' [4, 4]",
+                             "representative_pixel: grid is [3, 2], expected extents that divide the maps' [4, 4]",
                              value_error);
     }
 }

@@ -40,6 +40,49 @@ TEST_SUITE("examples_support/exr_maps_writer") {
         }
     }
 
+    TEST_CASE("rest positions are read back bit by bit in every layout") {
+        auto const maps = two_frames();
+        auto const& e = maps.first.coverage.shape();
+        auto position = tensor<float, 4>::from_shape({e[0], e[1], e[2], 3});
+        for (std::size_t i = 0; i < position.size(); ++i) {
+            auto const is_covered = maps.first.coverage.data()[i / 3] != 0;
+            position.data()[i] = is_covered ? static_cast<float>(i) / 7 - 3 : 0;
+        }
+        for (auto const& options : {exr_write_options{}, exr_write_options{.multipart = true},
+                                    exr_write_options{.layout = exr_layout::plain}}) {
+            scratch_folder const folder;
+            write_exr_maps(folder.path(), maps.first, maps.second, options, position);
+            auto const sequence = load_exr_sequence(folder.path());
+            CHECK(sequence.position == position);
+            CHECK(sequence.notes.empty());
+        }
+        scratch_folder const folder;
+        write_exr_maps(folder.path(), maps.first, maps.second);
+        CHECK(load_exr_sequence(folder.path()).position.shape()[0] == 0);
+        CHECK_THROWS_AS(write_exr_maps(folder.path(), maps.first, maps.second, {},
+                                       tensor<float, 4>::from_shape({1, e[1], e[2], 3})),
+                        shape_error);
+    }
+
+    TEST_CASE("Blender's own Position pass is taken with a note and not by some files alone") {
+        scratch_folder const folder;
+        std::vector<examples::detail::exr_output_plane> planes{
+            {"", "ViewLayer.UV.U", {0.3f}},    {"", "ViewLayer.UV.V", {0.7f}},   {"", "ViewLayer.UV.A", {1}},
+            {"", "ViewLayer.Depth.Z", {3}},    {"", "ViewLayer.IndexOB.X", {2}}, {"", "ViewLayer.Position.X", {5}},
+            {"", "ViewLayer.Position.Y", {6}}, {"", "ViewLayer.Position.Z", {7}}};
+        examples::detail::write_exr_planes(folder / "1.exr", planes, {1, 1}, false);
+        auto const sequence = load_exr_sequence(folder.path());
+        CHECK(sequence.position(0, 0, 0, 2) == 7);
+        REQUIRE(sequence.notes.size() == 1);
+        CHECK(sequence.notes[0].find("Position pass") != std::string::npos);
+        planes.resize(5);
+        examples::detail::write_exr_planes(folder / "2.exr", planes, {1, 1}, false);
+        CHECK_THROWS_WITH_AS(
+            load_exr_sequence(folder.path()),
+            ((folder / "2.exr").string() + ": has no positions, expected ViewLayer.Position.X as in 1.exr").c_str(),
+            file_error);
+    }
+
     TEST_CASE("a multi-part file has a part a pass") {
         auto const maps = two_frames();
         scratch_folder const folder;

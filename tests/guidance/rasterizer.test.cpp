@@ -8,6 +8,7 @@
 
 #include <glm/ext/matrix_transform.hpp>
 
+#include <cmath>
 #include <memory>
 
 namespace {
@@ -81,6 +82,30 @@ TEST_SUITE("guidance/rasterizer") {
             CHECK(nearest < last_depth - 0.5f);
             last_depth = nearest;
         }
+    }
+
+    TEST_CASE("rest positions lie on the mesh as it is at rest while the object moves") {
+        auto const guidance = rasterize(approaching_ball{}, {32, 32}, sequential_loop{}, position_pass::on);
+        CHECK(is_same(guidance, rasterize(approaching_ball{}, {32, 32})));
+        auto const maps = to_position_view(guidance);
+        std::size_t seen = 0;
+        for (std::uint32_t i = 0; i < 5; ++i) {
+            for (std::uint32_t row = 0; row < 32; ++row) {
+                for (std::uint32_t column = 0; column < 32; ++column) {
+                    auto const p = maps.point_at({i}, {row, column});
+                    auto const length = std::hypot(p[0], p[1], p[2]);
+                    if (!maps.is_covered({i}, {row, column})) {
+                        CHECK(length == 0);
+                    } else if (maps.object_at({i}, {row, column}) == object_index{1}) {
+                        // The faces of the ball lie a little inside of it.
+                        CHECK(length == doctest::Approx(0.5).epsilon(0.02));
+                        ++seen;
+                    }
+                }
+            }
+        }
+        CHECK(seen > 200);
+        CHECK_THROWS_AS(to_position_view(rasterize(approaching_ball{}, {4, 4})), shape_error);
     }
 
     TEST_CASE("an image without pixels and a frame that does not exist are refused by name") {

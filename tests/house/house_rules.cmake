@@ -5,7 +5,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # The rooms in the order the data flows: a header includes its own room and those before it.
 set(rooms core scene guidance correspondence noise attention sampling keyframes blending injection normalization pipeline
-    baselines models evaluation adapters)
+    baselines inspection models evaluation adapters)
 # Rooms that no header of another room includes: the reference network and the bridges to engines.
 set(leaf_rooms models adapters)
 # What only one header may include, as `<expression> <the header>`.

@@ -32,6 +32,11 @@ stack<Real, 4> noise_of(uv_maps const& maps, std::size_t channels, grid_extents 
     return z;
 }
 
+/// Settings of the paper's own reading of noise textures.
+noise_settings by_texel(noise_kind kind, background_noise background, std::size_t T, std::uint64_t seed) {
+    return {kind, background, T, seed, noise_reading::nearest_texel, {}};
+}
+
 std::vector<frame_index> all_frames(uv_maps const& maps) {
     std::vector<frame_index> frames;
     for (std::uint32_t i = 0; i < maps.frame_count(); ++i) {
@@ -126,7 +131,7 @@ TEST_SUITE("noise/initial_noise") {
                 CAPTURE(static_cast<int>(kind));
                 CAPTURE(T);
                 for (auto const frame : all_frames(maps)) {
-                    auto const m = moments_of(noise_of<Real>(maps, 256, {16, 16}, {frame}, {kind, {}, T, 11}));
+                    auto const m = moments_of(noise_of<Real>(maps, 256, {16, 16}, {frame}, by_texel(kind, {}, T, 11)));
                     // 65536 values, of which about four pixels repeat a texel: four standard errors of 16384.
                     CHECK(std::abs(m.mean) < 0.032);
                     CHECK(std::abs(m.variance - 1) < 0.045);
@@ -141,7 +146,7 @@ TEST_SUITE("noise/initial_noise") {
             CAPTURE(seed);
             auto const maps = random_scene(seed, 4, {64, 64}, 3);
             grid_extents const grid{16, 16};
-            auto const z = noise_of(maps, 2, grid, all_frames(maps), {noise_kind::uv, {}, 8, 5});
+            auto const z = noise_of(maps, 2, grid, all_frames(maps), by_texel(noise_kind::uv, {}, 8, 5));
             std::map<texel, std::pair<double, std::size_t>> seen;
             std::size_t shared = 0;
             std::size_t differing = 0;
@@ -169,7 +174,7 @@ TEST_SUITE("noise/initial_noise") {
             auto const maps = random_scene(seed, 3, {64, 64}, 3);
             auto const frames = all_frames(maps);
             auto const uv =
-                correlation_along(maps, noise_of(maps, 64, {16, 16}, frames, {noise_kind::uv, {}, 0, 5}), 2);
+                correlation_along(maps, noise_of(maps, 64, {16, 16}, frames, by_texel(noise_kind::uv, {}, 0, 5)), 2);
             auto const independent =
                 correlation_along(maps, noise_of(maps, 64, {16, 16}, frames, {noise_kind::independent, {}, 0, 5}), 2);
             REQUIRE(uv.pairs > 40);
@@ -184,7 +189,7 @@ TEST_SUITE("noise/initial_noise") {
         for (std::uint32_t const object : {0U, 1U, 77U}) {
             CAPTURE(object);
             auto const maps = sliding_plane(3, {8, 8}, 2, 32, object);
-            auto const z = noise_of(maps, 3, {8, 8}, all_frames(maps), {noise_kind::uv, {}, 32, 9});
+            auto const z = noise_of(maps, 3, {8, 8}, all_frames(maps), by_texel(noise_kind::uv, {}, 32, 9));
             std::size_t moved = 0;
             for (std::size_t c = 0; c < 3; ++c) {
                 for (std::size_t row = 0; row < 8; ++row) {
@@ -211,7 +216,8 @@ TEST_SUITE("noise/initial_noise") {
                 }
             }
         }
-        auto const z = noise_of(maps, 1, {8, 8}, all_frames(maps), {noise_kind::uv, background_noise::fixed, 32, 9});
+        auto const z =
+            noise_of(maps, 1, {8, 8}, all_frames(maps), by_texel(noise_kind::uv, background_noise::fixed, 32, 9));
         CHECK(z(1, 0, 3, 2) == z(0, 0, 3, 1));
         CHECK(z(1, 0, 3, 2) != z(0, 0, 3, 2));
         CHECK(z(1, 0, 3, 5) == z(0, 0, 3, 5));
@@ -221,7 +227,7 @@ TEST_SUITE("noise/initial_noise") {
     TEST_CASE("[GR sec. 3.3] objects with equal UVs have textures of their own") {
         auto const first = sliding_plane(1, {16, 16}, 0, 16, 0);
         auto const second = sliding_plane(1, {16, 16}, 0, 16, 1);
-        noise_settings const settings{noise_kind::uv, {}, 16, 4};
+        auto const settings = by_texel(noise_kind::uv, {}, 16, 4);
         auto const z_0 = noise_of(first, 32, {16, 16}, {{0}}, settings);
         auto const z_1 = noise_of(second, 32, {16, 16}, {{0}}, settings);
         double product = 0;
@@ -234,9 +240,10 @@ TEST_SUITE("noise/initial_noise") {
     TEST_CASE("the background is one image for all frames or another for each") {
         uv_maps const nothing(3, {8, 8});
         auto const frames = all_frames(nothing);
-        auto const fixed = noise_of(nothing, 2, {8, 8}, frames, {noise_kind::uv, background_noise::fixed, 0, 1});
+        auto const fixed =
+            noise_of(nothing, 2, {8, 8}, frames, by_texel(noise_kind::uv, background_noise::fixed, 0, 1));
         auto const independent =
-            noise_of(nothing, 2, {8, 8}, frames, {noise_kind::uv, background_noise::independent, 0, 1});
+            noise_of(nothing, 2, {8, 8}, frames, by_texel(noise_kind::uv, background_noise::independent, 0, 1));
         std::size_t equal_fixed = 0;
         std::size_t equal_independent = 0;
         for (std::size_t e = 0; e < 128; ++e) {
@@ -255,16 +262,16 @@ TEST_SUITE("noise/initial_noise") {
         auto const maps = random_scene(6, 2, {32, 32}, 3);
         uv_maps const nothing(2, {32, 32});
         for (auto const kind : {noise_kind::fixed, noise_kind::independent}) {
-            CHECK(equal_bits(noise_of(maps, 4, {16, 16}, {{0}, {1}}, {kind, {}, 0, 3}),
-                             noise_of(nothing, 4, {16, 16}, {{0}, {1}}, {kind, {}, 0, 3})));
+            CHECK(equal_bits(noise_of(maps, 4, {16, 16}, {{0}, {1}}, by_texel(kind, {}, 0, 3)),
+                             noise_of(nothing, 4, {16, 16}, {{0}, {1}}, by_texel(kind, {}, 0, 3))));
         }
     }
 
     TEST_CASE("another seed is other noise everywhere") {
         auto const maps = random_scene(6, 1, {32, 32}, 2);
         for (auto const kind : {noise_kind::uv, noise_kind::fixed, noise_kind::independent}) {
-            auto const a = noise_of(maps, 4, {16, 16}, {{0}}, {kind, {}, 0, 3});
-            auto const b = noise_of(maps, 4, {16, 16}, {{0}}, {kind, {}, 0, 4});
+            auto const a = noise_of(maps, 4, {16, 16}, {{0}}, by_texel(kind, {}, 0, 3));
+            auto const b = noise_of(maps, 4, {16, 16}, {{0}}, by_texel(kind, {}, 0, 4));
             std::size_t equal = 0;
             for (std::size_t e = 0; e < a.size(); ++e) {
                 equal += a.data()[e] == b.data()[e] ? 1U : 0U;
@@ -279,7 +286,7 @@ TEST_SUITE("noise/initial_noise") {
         grid_extents const grid{16, 16};
         for (auto const kind : {noise_kind::uv, noise_kind::fixed, noise_kind::independent}) {
             for (auto const background : {background_noise::fixed, background_noise::independent}) {
-                noise_settings const settings{kind, background, 0, 21};
+                auto const settings = by_texel(kind, background, 0, 21);
                 auto const together = noise_of<Real>(maps, 4, grid, all_frames(maps), settings);
                 auto const shuffled = noise_of<Real>(maps, 4, grid, {{3}, {0}, {4}, {3}}, settings);
                 auto const frame_size = 4 * grid.size();
@@ -322,9 +329,9 @@ TEST_SUITE("noise/initial_noise") {
 
     TEST_CASE("a low T repeats values in neighbouring pixels and a texture of one texel fills an object") {
         auto const maps = sliding_plane(1, {8, 8}, 0, 8, 2);
-        auto const one = noise_of(maps, 1, {8, 8}, {{0}}, {noise_kind::uv, {}, 1, 3});
+        auto const one = noise_of(maps, 1, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, 1, 3));
         CHECK(std::all_of(one.data(), one.data() + 64, [&](double value) { return value == one.data()[0]; }));
-        auto const four = noise_of(maps, 1, {8, 8}, {{0}}, {noise_kind::uv, {}, 4, 3});
+        auto const four = noise_of(maps, 1, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, 4, 3));
         CHECK(four(0, 0, 0, 0) == four(0, 0, 1, 1));
         CHECK(four(0, 0, 1, 1) != four(0, 0, 2, 2));
     }
@@ -332,8 +339,8 @@ TEST_SUITE("noise/initial_noise") {
     TEST_CASE("T = 0 finds the T at which a latent pixel is a texel") {
         // A pixel steps 1 / 32 in u and v, and a latent pixel of 8 x 8 spans two of them: T = 16.
         auto const maps = sliding_plane(2, {16, 16}, 2, 32, 0);
-        auto const matched = noise_of(maps, 2, {8, 8}, all_frames(maps), {noise_kind::uv, {}, 0, 3});
-        auto const given = noise_of(maps, 2, {8, 8}, all_frames(maps), {noise_kind::uv, {}, 16, 3});
+        auto const matched = noise_of(maps, 2, {8, 8}, all_frames(maps), by_texel(noise_kind::uv, {}, 0, 3));
+        auto const given = noise_of(maps, 2, {8, 8}, all_frames(maps), by_texel(noise_kind::uv, {}, 16, 3));
         CHECK(equal_bits(matched, given));
     }
 
@@ -342,43 +349,44 @@ TEST_SUITE("noise/initial_noise") {
         auto const NaN = std::numeric_limits<float>::quiet_NaN();
         maps.uv(0, 3, 3, 1) = NaN;
         for (std::size_t const T : {0U, 8U}) {
-            CHECK_THROWS_WITH_AS(noise_of(maps, 1, {8, 8}, {{0}}, {noise_kind::uv, {}, T, 0}),
+            CHECK_THROWS_WITH_AS(noise_of(maps, 1, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, T, 0)),
                                  "texel_of: uv is nan, expected finite texture coordinates", value_error);
-            CHECK_NOTHROW(noise_of(maps, 1, {8, 8}, {{0}}, {noise_kind::fixed, {}, T, 0}));
+            CHECK_NOTHROW(noise_of(maps, 1, {8, 8}, {{0}}, by_texel(noise_kind::fixed, {}, T, 0)));
         }
         maps.uv(0, 3, 3, 1) = std::numeric_limits<float>::infinity();
-        CHECK_THROWS_WITH_AS(noise_of(maps, 1, {8, 8}, {{0}}, {}),
+        CHECK_THROWS_WITH_AS(noise_of(maps, 1, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, 0, 0)),
                              "texel_of: uv is inf, expected finite texture coordinates", value_error);
         // On the background nobody reads them.
         maps.coverage(0, 3, 3) = 0;
-        CHECK_NOTHROW(noise_of(maps, 1, {8, 8}, {{0}}, {}));
+        CHECK_NOTHROW(noise_of(maps, 1, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, 0, 0)));
     }
 
     TEST_CASE("UVs that are no numbers do not disturb the T of others") {
         auto maps = sliding_plane(1, {16, 16}, 0, 32, 0);
-        auto const expected = noise_of(maps, 2, {8, 8}, {{0}}, {});
+        auto const expected = noise_of(maps, 2, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, 0, 0));
         // A cell's sample is its upper left pixel, so nobody reads the lower right one.
         for (std::size_t row = 1; row < 14; row += 2) {
             for (std::size_t column = 1; column < 16; column += 2) {
                 maps.uv(0, row, column, 0) = std::numeric_limits<float>::quiet_NaN();
             }
         }
-        CHECK(equal_bits(noise_of(maps, 2, {8, 8}, {{0}}, {}), expected));
+        CHECK(equal_bits(noise_of(maps, 2, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, 0, 0)), expected));
     }
 
     TEST_CASE("UVs beyond the texture read its border") {
         auto maps = sliding_plane(1, {8, 8}, 0, 8, 2);
         maps.uv(0, 3, 3, 0) = 1;
         maps.uv(0, 3, 3, 1) = -0.25F;
-        auto const z = noise_of(maps, 1, {8, 8}, {{0}}, {noise_kind::uv, {}, 8, 6});
+        auto const z = noise_of(maps, 1, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, 8, 6));
         CHECK(z(0, 0, 3, 3) == noise_texture{6}({{2}, 0, 7}, 0));
     }
 
     TEST_CASE("an error inside a thread reaches the caller") {
         auto maps = random_scene(1, 4, {16, 16}, 2);
         maps.uv.fill(std::numeric_limits<float>::quiet_NaN());
-        CHECK_THROWS_AS(noise_of(maps, 1, {16, 16}, all_frames(maps), {noise_kind::uv, {}, 8, 0}, threaded_loop(2)),
-                        value_error);
+        CHECK_THROWS_AS(
+            noise_of(maps, 1, {16, 16}, all_frames(maps), by_texel(noise_kind::uv, {}, 8, 0), threaded_loop(2)),
+            value_error);
     }
 
     TEST_CASE("shapes and frames that do not fit are refused with a sentence") {
@@ -391,8 +399,9 @@ TEST_SUITE("noise/initial_noise") {
                              value_error);
         CHECK_THROWS_WITH_AS(noise_of(maps, 1, {8, 8}, {{0}, {7}}, {}),
                              "initial_noise: frames is 7, expected frames of the UV maps", value_error);
-        CHECK_THROWS_WITH_AS(noise_of(maps, 1, {8, 8}, {{0}}, {noise_kind::uv, {}, (std::size_t{1} << 20) + 1, 0}),
-                             "texture_resolution: T is 1048577, expected 1 to 1048576 texels", value_error);
+        CHECK_THROWS_WITH_AS(
+            noise_of(maps, 1, {8, 8}, {{0}}, by_texel(noise_kind::uv, {}, (std::size_t{1} << 20) + 1, 0)),
+            "texture_resolution: T is 1048577, expected 1 to 1048576 texels", value_error);
         stack<float, 4> z({2, 1, 8, 8});
         std::vector<frame_index> const one{{0}};
         CHECK_THROWS_WITH_AS(initial_noise(z.view(), to_uv_view(maps), one, {}),

@@ -116,8 +116,20 @@ TEST_SUITE("pipeline/render") {
         CHECK(difference(full, changed([](auto& s) { s.normalization.on_noisy_latents = true; })) > 1e-6);
         CHECK(difference(full, changed([](auto& s) { s.keeps_own_copy = false; })) > 1e-9);
         CHECK(difference(full, changed([](auto& s) { s.first_fill_share = 1; })) > 1e-9);
-        CHECK(difference(full, changed([](auto& s) { s.correspondence.T = 2; })) > 1e-6);
-        CHECK(difference(full, changed([](auto& s) { s.noise.T = 2; })) > 1e-3);
+        auto const by_texels = [](auto& s) { s.correspondence.kind = correspondence_kind::texel_grid; };
+        CHECK(difference(full, changed(by_texels)) > 1e-9);
+        CHECK(difference(changed(by_texels), changed([&](auto& s) {
+                             by_texels(s);
+                             s.correspondence.texels.T = 2;
+                         })) > 1e-6);
+        CHECK(difference(full, changed([](auto& s) { s.correspondence.footprint.reach = 0.1; })) > 1e-6);
+        CHECK(difference(full, changed([](auto& s) { s.average = texel_average::by_quality; })) > 1e-9);
+        auto const by_nearest = [](auto& s) { s.noise.reading = noise_reading::nearest_texel; };
+        CHECK(difference(full, changed(by_nearest)) > 1e-3);
+        CHECK(difference(changed(by_nearest), changed([&](auto& s) {
+                             by_nearest(s);
+                             s.noise.T = 2;
+                         })) > 1e-3);
         CHECK(difference(full, changed([](auto& s) { s.keyframes.drawing = keyframe_drawing::stratified; })) > 1e-9);
     }
     TEST_CASE("[GR sec. 4: Ablation studies] each ablation is one setting away from the full method") {
@@ -146,7 +158,7 @@ TEST_SUITE("pipeline/render") {
         render_report report;
         auto const z = render(generative_rendering{}, phi, to_uv_view(scene()), few_steps(), report);
         CHECK(difference(z, run(phi, few_steps())) == 0);
-        auto const make_map = [](grid_extents grid) { return texel_grid(to_uv_view(scene()), grid); };
+        auto const make_map = [](grid_extents grid) { return footprint_map(to_uv_view(scene()), grid); };
         CHECK(difference(z, render(generative_rendering{}, phi, to_uv_view(scene()), make_map, few_steps(), report)) ==
               0);
         CHECK(difference(z, render(phi, to_uv_view(scene()), make_map, few_steps(), report)) == 0);

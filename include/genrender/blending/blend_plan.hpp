@@ -38,13 +38,20 @@ struct blend_plan {
     }
 };
 
+/// How the average texture weighs the keyframes that see a texel.
+enum class texel_average : std::uint8_t {
+    plain,     ///< all alike (the paper's)
+    by_quality ///< by how well they see it, where the correspondence says (graded_correspondence_map)
+};
+
 /// Compiles the plan that gives frame i its F_bar = pi_i(T_bar), T_bar = unified texture of `keyframes` in their order:
 /// a token whose surface point is seen by several keyframes mixes them by unified_weight, a token that no keyframe
 /// covers has no entry. Throws value_error if a frame does not exist, no keyframe is given or the share is outside [0,
 /// 1].
 template <class Real, correspondence_map Map>
 blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> keyframes, frame_index i,
-                                 std::type_identity_t<Real> first_fill_share = Real(0.5)) {
+                                 std::type_identity_t<Real> first_fill_share = Real(0.5),
+                                 texel_average average = texel_average::plain) {
     require_frame("make_blend_plan", "i", map, i);
     require_value(!keyframes.empty(), "make_blend_plan", "keyframes", "empty", "at least one keyframe");
     for (auto const keyframe : keyframes) {
@@ -56,29 +63,50 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
     auto const tokens = map.grid().size();
     blend_plan<Real> plan;
     plan.offsets.reserve(tokens + 1);
-    std::vector<std::size_t> seeing; // positions in `keyframes`, in the drawn order
-    std::vector<std::optional<token_index>> speakers(keyframes.size());
+    struct speaker {
+        std::size_t keyframe; // its position in `keyframes`, in the drawn order
+        token_index token;
+        double share; // of what the keyframe says, 1 unless several of its tokens speak
+    };
+    std::vector<speaker> speakers;
+    std::vector<std::size_t> first_of; // the first speaker of each keyframe that sees the point
+    std::vector<double> quality;
     for (std::uint32_t t = 0; t < tokens; ++t) {
         auto const point = map.point_at(i, {t});
         if (point) {
-            seeing.clear();
+            speakers.clear();
+            first_of.clear();
+            quality.clear();
+            double quality_sum = 0;
             for (std::size_t k = 0; k < keyframes.size(); ++k) {
-                speakers[k] = map.token_at(keyframes[k], *point);
-                if (speakers[k]) {
-                    seeing.push_back(k);
+                auto const before = speakers.size();
+                if constexpr (weighted_correspondence_map<Map>) {
+                    map.visit_tokens(keyframes[k], *point, [&](token_index token, double share) {
+                        speakers.push_back({k, token, share});
+                    });
+                } else if (auto const token = map.token_at(keyframes[k], *point)) {
+                    speakers.push_back({k, *token, 1});
+                }
+                if (speakers.size() > before) {
+                    first_of.push_back(before);
+                    quality.push_back(0);
+                    if constexpr (graded_correspondence_map<Map>) {
+                        if (average == texel_average::by_quality) {
+                            quality.back() = map.quality_at(keyframes[k], *point);
+                            quality_sum += quality.back();
+                        }
+                    }
                 }
             }
-            for (std::size_t position = 0; position < seeing.size(); ++position) {
-                auto const k = seeing[position];
-                auto const weight = unified_weight<Real>(position, seeing.size(), first_fill_share);
-                auto const add = [&](token_index token, double share) {
-                    plan.sources.push_back(static_cast<std::uint32_t>(k * tokens + token.value));
-                    plan.weights.push_back(weight * static_cast<Real>(share));
-                };
-                if constexpr (weighted_correspondence_map<Map>) {
-                    map.visit_tokens(keyframes[k], *point, add);
-                } else {
-                    add(*speakers[k], 1);
+            auto const seen = first_of.size();
+            first_of.push_back(speakers.size());
+            for (std::size_t position = 0; position < seen; ++position) {
+                auto const weight = unified_weight<Real>(
+                    position, average_weight_by_quality<Real>(quality[position], quality_sum, seen), first_fill_share);
+                for (auto s = first_of[position]; s < first_of[position + 1]; ++s) {
+                    plan.sources.push_back(
+                        static_cast<std::uint32_t>(speakers[s].keyframe * tokens + speakers[s].token.value));
+                    plan.weights.push_back(weight * static_cast<Real>(speakers[s].share));
                 }
             }
         }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 
@@ -18,7 +19,9 @@ enum class random_stream : std::uint32_t {
     keyframes,
     weights,
     test,
-    user ///< for programs, which the library never draws from
+    user, ///< for programs, which the library never draws from
+    surface_noise,
+    environment_noise
 };
 
 namespace detail {
@@ -71,12 +74,29 @@ constexpr std::uint32_t uniform_below(std::uint32_t bound, std::uint64_t seed, r
     return static_cast<std::uint32_t>((std::uint64_t{bits[0]} * bound + low) >> 32);
 }
 
-/// A value of N(0, 1), by the Box-Muller transform in double precision; never infinite (at most 8.66 in magnitude).
-inline double normal_value(std::uint64_t seed, random_stream stream, random_address address) {
-    auto const bits = random_bits(seed, stream, address);
+/// The value of N(0, 1) that 128 random bits name, by the Box-Muller transform in double precision; never infinite (at
+/// most 8.66 in magnitude).
+inline double normal_of(std::array<std::uint32_t, 4> const& bits) {
     auto const u = (static_cast<double>((std::uint64_t{bits[0]} << 21) ^ (bits[1] >> 11)) + 0.5) * 0x1p-53;
     auto const turn = (static_cast<double>(bits[2]) + 0.5) * 0x1p-32;
     return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * turn);
+}
+
+/// Four independent values of N(0, 1) that 128 random bits name, 32 a value; at most 6.7 in magnitude.
+inline std::array<double, 4> four_normals_of(std::array<std::uint32_t, 4> const& bits) {
+    std::array<double, 4> values{};
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+        auto const radius = std::sqrt(-2 * std::log((static_cast<double>(bits[2 * pair]) + 0.5) * 0x1p-32));
+        auto const angle = 2 * std::numbers::pi * (static_cast<double>(bits[2 * pair + 1]) + 0.5) * 0x1p-32;
+        values[2 * pair] = radius * std::cos(angle);
+        values[2 * pair + 1] = radius * std::sin(angle);
+    }
+    return values;
+}
+
+/// A value of N(0, 1) at an address.
+inline double normal_value(std::uint64_t seed, random_stream stream, random_address address) {
+    return normal_of(random_bits(seed, stream, address));
 }
 
 } // namespace genrender

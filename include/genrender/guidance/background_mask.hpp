@@ -4,9 +4,8 @@
 
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
+#include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/guidance/cell_extents.hpp>
-#include <genrender/guidance/cell_extents.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +15,8 @@ namespace genrender {
 /// 1 where no pixel of the cell shows an object, else 0 [frames, height, width of `grid`]. A cell that an object
 /// touches is not background, so statistics over the mask hold no object. Throws value_error unless `grid` divides the
 /// maps' height and width.
-inline tensor<std::uint8_t, 3> background_mask(uv_maps_view const& maps, grid_extents grid) {
+template <canonical_maps Maps>
+tensor<std::uint8_t, 3> background_mask(Maps const& maps, grid_extents grid) {
     auto const pixels = maps.grid();
     auto const cell = cell_extents("background_mask", pixels, grid);
     auto mask = tensor<std::uint8_t, 3>::from_shape({maps.frame_count(), grid.height, grid.width});

@@ -6,6 +6,7 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/scene/animation.hpp>
+#include <genrender/scene/mesh.hpp>
 #include <genrender/scene/triangle_coverage.hpp>
 
 #include <glm/mat4x4.hpp>
@@ -18,8 +19,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace genrender {
@@ -30,6 +33,8 @@ struct frame_guidance_view {
     strided_view<std::uint32_t, 2> object;  ///< number of the object [height, width]
     strided_view<std::uint8_t, 2> coverage; ///< 1 where the pixel shows an object [height, width]
     strided_view<float, 2> depth;           ///< distance along the view, > 0 where covered [height, width]
+    /// Where the point lies in the mesh as it is at rest [height, width, 3], if anybody wants to know.
+    std::optional<strided_view<float, 3>> position = {};
 };
 
 namespace detail {
@@ -89,7 +94,7 @@ inline void require_drawable(posed_object const& posed) {
 /// Draws one triangle over what was drawn before: nearest wins, equally near goes to the lower object, then to the
 /// earlier triangle.
 inline void draw_triangle(frame_guidance_view const& to, std::vector<double>& nearest,
-                          camera_space_triangle const& corners, std::array<glm::dvec2, 3> const& uvs,
+                          camera_space_triangle const& corners, mesh const& surface, glm::uvec3 const& t,
                           object_index object, image_plane const& plane, double near_distance) {
     auto const coverage = triangle_coverage::of(corners);
     if (!coverage) {
@@ -110,12 +115,22 @@ inline void draw_triangle(frame_guidance_view const& to, std::vector<double>& ne
                 continue;
             }
             best = depth;
-            auto const uv = weight->x * uvs[0] + weight->y * uvs[1] + weight->z * uvs[2];
+            auto const interpolated = [&](auto const& values) {
+                using point = glm::vec<std::decay_t<decltype(values[0])>::length(), double>;
+                return weight->x * point(values[t.x]) + weight->y * point(values[t.y]) + weight->z * point(values[t.z]);
+            };
+            auto const uv = interpolated(surface.uvs);
             to.uv(row, column, 0) = static_cast<float>(uv.x);
             to.uv(row, column, 1) = static_cast<float>(uv.y);
             to.object(row, column) = object.value;
             to.coverage(row, column) = 1;
             to.depth(row, column) = static_cast<float>(depth);
+            if (to.position) {
+                auto const position = interpolated(surface.positions);
+                for (glm::length_t axis = 0; axis < 3; ++axis) {
+                    (*to.position)(row, column, static_cast<std::size_t>(axis)) = static_cast<float>(position[axis]);
+                }
+            }
         }
     }
 }
@@ -128,7 +143,7 @@ inline void draw_triangle(frame_guidance_view const& to, std::vector<double>& ne
 /// lower object number wins, then the earlier triangle. Nothing nearer than the camera's near distance is seen, cut per
 /// pixel.
 ///
-/// Throws shape_error unless all four views have the same height and width and every object has as many positions as
+/// Throws shape_error unless all views have the same height and width and every object has as many positions as
 /// its surface; value_error at a camera that cannot see, an object without a surface, positions that are not finite,
 /// and as validate(mesh) does.
 inline void rasterize_frame(frame_guidance_view const& to, posed_scene const& scene) {
@@ -136,6 +151,9 @@ inline void rasterize_frame(frame_guidance_view const& to, posed_scene const& sc
     require_shape("rasterize", "uv", to.uv, {extents[0], extents[1], 2});
     require_shape("rasterize", "object", to.object, extents);
     require_shape("rasterize", "depth", to.depth, extents);
+    if (to.position) {
+        require_shape("rasterize", "position", *to.position, {extents[0], extents[1], 3});
+    }
     validate(scene.camera, "rasterize");
     for (auto const& posed : scene.objects) {
         detail::require_drawable(posed);
@@ -146,6 +164,9 @@ inline void rasterize_frame(frame_guidance_view const& to, posed_scene const& sc
             to.uv(row, column, 0) = to.uv(row, column, 1) = to.depth(row, column) = 0;
             to.object(row, column) = 0;
             to.coverage(row, column) = 0;
+            for (std::size_t axis = 0; to.position && axis < 3; ++axis) {
+                (*to.position)(row, column, axis) = 0;
+            }
         }
     }
     std::vector<double> nearest(extents[0] * extents[1], std::numeric_limits<double>::infinity());
@@ -160,10 +181,8 @@ inline void rasterize_frame(frame_guidance_view const& to, posed_scene const& sc
         }
         auto const& surface = *posed.surface;
         for (auto const& t : surface.triangles) {
-            detail::draw_triangle(
-                to, nearest, {seen[t.x], seen[t.y], seen[t.z]},
-                {glm::dvec2(surface.uvs[t.x]), glm::dvec2(surface.uvs[t.y]), glm::dvec2(surface.uvs[t.z])},
-                posed.object, plane, static_cast<double>(scene.camera.near_distance));
+            detail::draw_triangle(to, nearest, {seen[t.x], seen[t.y], seen[t.z]}, surface, t, posed.object, plane,
+                                  static_cast<double>(scene.camera.near_distance));
         }
     }
 }

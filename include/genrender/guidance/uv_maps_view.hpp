@@ -10,9 +10,12 @@
 
 namespace genrender {
 
-/// UV maps of an animation in their owner's memory: full resolution, no antialiasing, floating point.
+/// UV maps of an animation in their owner's memory: full resolution, no antialiasing, floating point. A model of
+/// canonical_maps.
 class uv_maps_view {
 public:
+    static constexpr std::size_t dimensions = 2;
+
     /// `uv` [frames, height, width, 2] in texture coordinates, `object` and `coverage` [frames, height, width]. Throws
     /// shape_error if the extents do not fit each other.
     uv_maps_view(strided_view<float const, 4> uv, strided_view<std::uint32_t const, 3> object,
@@ -34,6 +37,8 @@ public:
     std::array<float, 2> uv_at(frame_index i, pixel p) const {
         return {uv_(i.value, p.row, p.column, 0), uv_(i.value, p.row, p.column, 1)};
     }
+    /// The same as a canonical surface point.
+    std::array<float, 2> point_at(frame_index i, pixel p) const { return uv_at(i, p); }
 
 private:
     strided_view<float const, 4> uv_;

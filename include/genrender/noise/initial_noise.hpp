@@ -4,12 +4,16 @@
 
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
+#include <genrender/noise/background_noise.hpp>
 #include <genrender/noise/noise_texture.hpp>
+#include <genrender/noise/surface_noise.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 namespace genrender {
@@ -21,30 +25,86 @@ enum class noise_kind : std::uint8_t {
     independent ///< another image for each frame (ablation, and plain per-frame sampling)
 };
 
-/// Which noise pixels without an object receive under noise_kind::uv.
-enum class background_noise : std::uint8_t {
-    fixed,      ///< one image for all frames
-    independent ///< another image for each frame
+/// How a latent pixel reads the noise of a surface under noise_kind::uv.
+enum class noise_reading : std::uint8_t {
+    surface,       ///< all of the surface that the pixel sees, at any zoom: white in every frame (surface_noise)
+    nearest_texel, ///< one texel of a T x T texture: the paper's, with values that repeat or do not correspond
+    bilinear_texel ///< the four texels around a point, mixed: loses variance, to compare with
 };
 
 /// How initial noise is made.
 struct noise_settings {
     noise_kind kind = noise_kind::uv;
     background_noise background = background_noise::fixed;
-    /// T, texels along each side of an object's noise texture, which is read by the nearest texel: a low T repeats
+    /// T, texels along each side of an object's noise texture under the readings of texels: a low T repeats
     /// values in neighbouring pixels, a high T gives each frame noise of its own. 0 matches each object's T to its
     /// density in the maps, one texel a latent pixel.
     std::size_t T = 0;
     std::uint64_t seed = 0;
+    noise_reading reading = noise_reading::surface;
+    environment_rays rays = {}; ///< what background_noise::environment needs
 };
 
+namespace detail {
+
+/// The mean of the four texels around a sample, by its distance from their centres.
+inline double bilinear_value(noise_texture const& z_UV, surface_sample const& sample,
+                             texture_resolution const& resolution, std::uint32_t channel) {
+    auto const T = static_cast<double>(resolution.of(sample.object));
+    auto const low = [T](float coordinate) { return std::floor(static_cast<double>(coordinate) * T - 0.5); };
+    auto const column = low(sample.uv[0]);
+    auto const row = low(sample.uv[1]);
+    double value = 0;
+    for (auto const down : {0.0, 1.0}) {
+        for (auto const right : {0.0, 1.0}) {
+            auto const share = (1 - std::abs(static_cast<double>(sample.uv[0]) * T - 0.5 - column - right)) *
+                               (1 - std::abs(static_cast<double>(sample.uv[1]) * T - 0.5 - row - down));
+            auto const inside = [T](double place) { return static_cast<std::uint32_t>(std::clamp(place, 0.0, T - 1)); };
+            value += share * z_UV({sample.object, inside(row + down), inside(column + right)}, channel);
+        }
+    }
+    return value;
+}
+
+/// z = pi_UV(z_UV) of a stored-resolution texture: every latent pixel reads where its representative sample lies.
+template <class Real>
+void texel_noise(strided_view<Real, 3> z, uv_maps_view const& maps, frame_index i, texture_resolution const& resolution,
+                 noise_settings const& settings) {
+    grid_extents const grid{z.extent(1), z.extent(2)};
+    noise_texture const z_UV{settings.seed};
+    for (std::uint32_t t = 0; t < grid.size(); ++t) {
+        auto const sample = representative_sample(maps, i, grid, {t});
+        // Refuses coordinates that are no numbers, whatever the reading.
+        auto const nearest = sample ? texel_of(*sample, resolution) : texel{};
+        for (std::uint32_t c = 0; c < z.extent(0); ++c) {
+            auto const value = !sample ? screen_noise(settings.seed, settings.background, i, 0, t, c)
+                               : settings.reading == noise_reading::nearest_texel
+                                   ? z_UV(nearest, c)
+                                   : bilinear_value(z_UV, *sample, resolution, c);
+            z(c, t / grid.width, t % grid.width) = static_cast<Real>(value);
+        }
+    }
+}
+
+/// Throws value_error for settings that contradict each other.
+inline void require_noise_settings(noise_settings const& settings) {
+    auto const has_texels = settings.reading != noise_reading::surface;
+    require_value(settings.T == 0 || has_texels, "initial_noise", "settings.T", settings.T,
+                  "0, since noise_reading::surface has no texture resolution");
+    require_value(settings.background != background_noise::environment || (!has_texels && settings.rays.direction),
+                  "initial_noise", "settings.background", "environment",
+                  "noise_reading::surface and settings.rays beside it");
+}
+
+} // namespace detail
+
 /// Writes noise of N(0, 1) into z [frames, channels, height, width]; `frames[i]` is the frame that entry i shows. Under
-/// noise_kind::uv, z = pi_UV(z_UV): a latent pixel reads the texel of its representative sample. Each frame depends on
-/// its own maps alone, and with T = 0 on the T that all frames of the maps give its objects. Throws shape_error if
-/// `frames` does not count the entries of z, value_error if a frame is not in the maps, the latents do not divide them
-/// or a UV is not finite.
-template <class Real, parallel_loop Loop = sequential_loop>
-void initial_noise(strided_view<Real, 4> z, uv_maps_view const& maps, std::span<frame_index const> frames,
+/// noise_kind::uv, z = pi_UV(z_UV) by settings.reading. Each frame depends on its own maps alone, and with T = 0 under
+/// readings of texels on the T that all frames of the maps give its objects. Throws shape_error if `frames` does not count
+/// the entries of z, value_error if a frame is not in the maps, the latents do not divide them, a coordinate is not
+/// finite, or settings contradict each other or, with texels, the maps are not UV maps.
+template <class Real, canonical_maps Maps, parallel_loop Loop = sequential_loop>
+void initial_noise(strided_view<Real, 4> z, Maps const& maps, std::span<frame_index const> frames,
                    noise_settings const& settings, Loop const& loop = {}) {
     require_extents("initial_noise", "frames", std::array{frames.size()}, std::array{z.extent(0)});
     grid_extents const grid{z.extent(2), z.extent(3)};
@@ -53,28 +113,29 @@ void initial_noise(strided_view<Real, 4> z, uv_maps_view const& maps, std::span<
         require_value(frame.value < maps.frame_count(), "initial_noise", "frames", frame.value,
                       "frames of the UV maps");
     }
-    auto const resolution = settings.kind != noise_kind::uv ? texture_resolution::same(1) // No texture is read.
-                            : settings.T > 0                ? texture_resolution::same(settings.T)
-                                                            : texture_resolution::matched(maps, grid, 1);
-    noise_texture const z_UV{settings.seed};
-    auto const differs_by_frame =
-        settings.kind == noise_kind::independent ||
-        (settings.kind == noise_kind::uv && settings.background == background_noise::independent);
-
-    loop(frames.size(), [&](std::size_t i) {
-        for (std::uint32_t t = 0; t < grid.size(); ++t) {
-            auto const sample =
-                settings.kind == noise_kind::uv ? representative_sample(maps, frames[i], grid, {t}) : std::nullopt;
-            for (std::uint32_t c = 0; c < z.extent(1); ++c) {
-                auto const value =
-                    sample ? z_UV(texel_of(*sample, resolution), c)
-                    : differs_by_frame
-                        ? normal_value(settings.seed, random_stream::frame_noise, {frames[i].value, t, c})
-                        : normal_value(settings.seed, random_stream::background_noise, {0, t, c});
-                z(i, c, t / grid.width, t % grid.width) = static_cast<Real>(value);
+    detail::require_noise_settings(settings);
+    if (settings.kind != noise_kind::uv) {
+        auto const kind = settings.kind == noise_kind::fixed ? background_noise::fixed : background_noise::independent;
+        loop(frames.size(), [&](std::size_t i) {
+            for (std::uint32_t t = 0; t < grid.size(); ++t) {
+                for (std::uint32_t c = 0; c < z.extent(1); ++c) {
+                    z(i, c, t / grid.width, t % grid.width) =
+                        static_cast<Real>(screen_noise(settings.seed, kind, frames[i], 0, t, c));
+                }
             }
-        }
-    });
+        });
+    } else if (settings.reading == noise_reading::surface) {
+        loop(frames.size(), [&](std::size_t i) {
+            surface_noise(z[i], maps, frames[i], settings.seed, settings.background, settings.rays);
+        });
+    } else if constexpr (std::same_as<Maps, uv_maps_view>) {
+        auto const resolution =
+            settings.T > 0 ? texture_resolution::same(settings.T) : texture_resolution::matched(maps, grid, 1);
+        loop(frames.size(), [&](std::size_t i) { detail::texel_noise(z[i], maps, frames[i], resolution, settings); });
+    } else {
+        throw value_error(
+            "initial_noise: settings.reading is of texels, expected surface for maps that are not UV maps");
+    }
 }
 
 } // namespace genrender

@@ -62,7 +62,7 @@ struct generative_rendering {
             typename injector_type::rows_of rows;
             if (settings.post_attention) {
                 rows = evaluation.plan_rows(frames, [&](auto const& map, frame_index i) {
-                    auto plan = make_blend_plan<real_type>(map, KF, i, settings.first_fill_share);
+                    auto plan = make_blend_plan<real_type>(map, KF, i, settings.first_fill_share, settings.average);
                     evaluation.report_coverage(map, i, plan.covered_count());
                     return plan;
                 });

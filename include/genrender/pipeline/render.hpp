@@ -42,15 +42,16 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
     evaluations(settings.method, settings.steps);
 }
 
-/// Throws value_error naming the first covered pixel whose UV is not finite.
-inline void require_finite_uv(uv_maps_view const& UV) {
+/// Throws value_error naming the first covered pixel whose canonical coordinates are not finite.
+template <canonical_maps Maps>
+void require_finite_coordinates(Maps const& UV) {
     for (std::uint32_t frame = 0; frame < UV.frame_count(); ++frame) {
         for (std::uint32_t row = 0; row < UV.grid().height; ++row) {
             for (std::uint32_t column = 0; column < UV.grid().width; ++column) {
                 if (!UV.is_covered({frame}, {row, column})) {
                     continue;
                 }
-                for (auto const coordinate : UV.uv_at({frame}, {row, column})) {
+                for (auto const coordinate : UV.point_at({frame}, {row, column})) {
                     if (!std::isfinite(coordinate)) {
                         throw value_error("render: UV of frame " + std::to_string(frame) + " at row " +
                                           std::to_string(row) + " column " + std::to_string(column) + " is " +
@@ -85,15 +86,14 @@ using map_made_by = std::invoke_result_t<MakeMap const&, grid_extents>;
 /// correspondence map of a feature resolution. The same seeds give the same frames with every `loop`, bit for bit.
 /// Throws value_error or shape_error for arguments that do not fit, before anything is run; cancelled if the observer
 /// ends the run; what the denoiser throws.
-template <denoiser Phi, class MakeMap, parallel_loop Loop = sequential_loop,
+template <denoiser Phi, canonical_maps Maps, class MakeMap, parallel_loop Loop = sequential_loop,
           sequence_method<sequence_evaluation<Phi, map_made_by<MakeMap>, Loop>> Method>
-latents<typename Phi::real_type> render(Method const& method, Phi const& phi, uv_maps_view const& UV,
-                                        MakeMap const& make_map,
+latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV, MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
     using Real = typename Phi::real_type;
     require_render_settings(settings, UV.frame_count());
-    require_finite_uv(UV);
+    require_finite_coordinates(UV);
     auto const sigmas = karras_schedule<Real>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
     auto const N = UV.frame_count();
     auto const grid = grid_extents(phi.latent_grid());
@@ -139,27 +139,29 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, uv
     });
 }
 
-/// The same with the paper's texel grid as the correspondence, set up by `settings.correspondence`.
-template <denoiser Phi, parallel_loop Loop = sequential_loop,
-          sequence_method<sequence_evaluation<Phi, texel_grid, Loop>> Method>
-latents<typename Phi::real_type> render(Method const& method, Phi const& phi, uv_maps_view const& UV,
+/// The same with the correspondence that `settings.correspondence` chooses.
+template <denoiser Phi, canonical_maps Maps, parallel_loop Loop = sequential_loop,
+          sequence_method<sequence_evaluation<Phi, surface_correspondence<Maps::dimensions>, Loop>> Method>
+latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
-    auto const make_map = [&](grid_extents grid) { return texel_grid(UV, grid, settings.correspondence, loop); };
+    auto const make_map = [&](grid_extents grid) {
+        return surface_correspondence<Maps::dimensions>(UV, grid, settings.correspondence, loop);
+    };
     return render(method, phi, UV, make_map, settings, report, std::move(observer), loop);
 }
 
 /// Alg. 1 with a correspondence of the user's own.
-template <denoiser Phi, class MakeMap, parallel_loop Loop = sequential_loop>
-latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV, MakeMap const& make_map,
+template <denoiser Phi, canonical_maps Maps, class MakeMap, parallel_loop Loop = sequential_loop>
+latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV, MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
     return render(generative_rendering{}, phi, UV, make_map, settings, report, std::move(observer), loop);
 }
 
 /// Alg. 1: Generative Rendering, as the paper has it.
-template <denoiser Phi, parallel_loop Loop = sequential_loop>
-latents<typename Phi::real_type> render(Phi const& phi, uv_maps_view const& UV,
+template <denoiser Phi, canonical_maps Maps, parallel_loop Loop = sequential_loop>
+latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
     return render(generative_rendering{}, phi, UV, settings, report, std::move(observer), loop);

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <genrender/attention/attention_site.hpp>
-#include <genrender/correspondence/texel_grid.hpp>
+#include <genrender/blending/blend_plan.hpp>
+#include <genrender/correspondence/surface_correspondence.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/noise/initial_noise.hpp>
 #include <genrender/normalization/adain.hpp>
@@ -31,10 +32,10 @@ struct render_settings {
     Real rho = 7;                   ///< spacing of the levels [EDM eq. 5]
     sampler method = sampler::euler;
 
-    noise_settings noise;               ///< sec. 3.3
-    keyframe_settings keyframes;        ///< alg. 1: KF
-    texel_grid_settings correspondence; ///< sec. 3.2
-    adain_settings<Real> normalization; ///< sec. 3.4
+    noise_settings noise;                   ///< sec. 3.3
+    keyframe_settings keyframes;            ///< alg. 1: KF
+    correspondence_settings correspondence; ///< sec. 3.2
+    adain_settings<Real> normalization;     ///< sec. 3.4
 
     /// Sites and branches that take part in the injection. Like alpha it may be called from several threads at once.
     std::function<bool(attention_site const&, std::uint32_t branch)> layers = is_in_decoder;
@@ -42,12 +43,13 @@ struct render_settings {
     std::function<Real(std::size_t step, attention_site const&)> alpha = [](std::size_t, attention_site const&) {
         return Real(0.7);
     };
-    bool pre_attention = true;         ///< eq. 3 and 5; without it no frame attends to another
-    bool post_attention = true;        ///< eq. 6
-    bool keeps_own_copy = true;        ///< eq. 5 as written: a keyframe meets its own tokens twice
-    Real first_fill_share = Real(0.5); ///< of the inpainted texture in the unified one
-    Real window_begin = 0;             ///< first and
-    Real window_end = 1;               ///< last share of the steps with keyframes and injection, [begin, end)
+    bool pre_attention = true;                    ///< eq. 3 and 5; without it no frame attends to another
+    bool post_attention = true;                   ///< eq. 6
+    bool keeps_own_copy = true;                   ///< eq. 5 as written: a keyframe meets its own tokens twice
+    Real first_fill_share = Real(0.5);            ///< of the inpainted texture in the unified one
+    texel_average average = texel_average::plain; ///< how the average texture weighs keyframes
+    Real window_begin = 0;                        ///< first and
+    Real window_end = 1; ///< last share of the steps with keyframes and injection, [begin, end)
 
     std::size_t frames_per_call = 1; ///< frames that the injected pass gives the denoiser at once
 };

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3] What names a surface point in every frame: texture coordinates, or where the point lies at rest.
+#pragma once
+
+#include <genrender/core/index.hpp>
+#include <genrender/core/strided_view.hpp>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+
+namespace genrender {
+
+/// Maps of an animation that tell, for every pixel of every frame, which object it shows and where on that object, in
+/// coordinates that move with the surface.
+///
+/// expression                | type                | meaning
+/// --------------------------|---------------------|------------------------------------------------------------------
+/// `Maps::dimensions`        | size_t              | number of canonical coordinates: 2 for UV, 3 for rest positions
+/// `maps.frame_count()`      | size_t              | frames of the animation
+/// `maps.grid()`             | grid_extents        | height and width of the maps
+/// `maps.is_covered(i, p)`   | bool                | whether the pixel shows an object
+/// `maps.object_at(i, p)`    | object_index        | the object that a covered pixel shows
+/// `maps.point_at(i, p)`     | array<float, D>     | its canonical coordinates; equal ones are one surface point
+///
+/// Models: uv_maps_view, position_maps_view.
+template <class Maps>
+concept canonical_maps = requires(Maps const& maps, frame_index i, pixel p) {
+    { maps.frame_count() } -> std::convertible_to<std::size_t>;
+    { maps.grid() } -> std::convertible_to<grid_extents>;
+    { maps.is_covered(i, p) } -> std::same_as<bool>;
+    { maps.object_at(i, p) } -> std::same_as<object_index>;
+    { maps.point_at(i, p) } -> std::same_as<std::array<float, Maps::dimensions>>;
+};
+
+/// A model of canonical_maps: where each surface point lies in its object's rest pose. Unlike UVs, no two points of an
+/// object share their rest position, so overlapping, mirrored and tiled UVs and the seams of charts do not matter.
+class position_maps_view {
+public:
+    static constexpr std::size_t dimensions = 3;
+
+    /// `position` [frames, height, width, 3] in the units of the rest pose, `object` and `coverage` [frames, height,
+    /// width]. Throws shape_error if the extents do not fit each other.
+    position_maps_view(strided_view<float const, 4> position, strided_view<std::uint32_t const, 3> object,
+                       strided_view<std::uint8_t const, 3> coverage)
+        : position_(position), object_(object), coverage_(coverage) {
+        auto const& e = coverage.extents();
+        require_shape("position_maps_view", "position", position, {e[0], e[1], e[2], 3});
+        require_shape("position_maps_view", "object", object, e);
+    }
+
+    std::size_t frame_count() const { return coverage_.extent(0); }
+    grid_extents grid() const { return {coverage_.extent(1), coverage_.extent(2)}; }
+
+    /// Whether the pixel shows an object.
+    bool is_covered(frame_index i, pixel p) const { return coverage_(i.value, p.row, p.column) != 0; }
+    /// The object a covered pixel shows.
+    object_index object_at(frame_index i, pixel p) const { return {object_(i.value, p.row, p.column)}; }
+    /// (x, y, z) at rest of a covered pixel.
+    std::array<float, 3> point_at(frame_index i, pixel p) const {
+        return {position_(i.value, p.row, p.column, 0), position_(i.value, p.row, p.column, 1),
+                position_(i.value, p.row, p.column, 2)};
+    }
+
+private:
+    strided_view<float const, 4> position_;
+    strided_view<std::uint32_t const, 3> object_;
+    strided_view<std::uint8_t const, 3> coverage_;
+};
+
+} // namespace genrender

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 3] Maps without what no search can take: pixels whose canonical coordinates are not finite.
+#pragma once
+
+#include <genrender/core/index.hpp>
+#include <genrender/guidance/canonical_maps.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace genrender {
+
+/// Whether all canonical coordinates of a point are finite.
+template <std::size_t D>
+bool is_finite(std::array<float, D> const& point) {
+    return std::all_of(point.begin(), point.end(), [](float x) { return std::isfinite(x); });
+}
+
+/// A model of canonical_maps that shows what other maps show where it is finite, and background elsewhere. Those maps
+/// must outlive it.
+template <canonical_maps Maps>
+class finite_maps {
+public:
+    static constexpr std::size_t dimensions = Maps::dimensions;
+
+    explicit finite_maps(Maps const& maps) : maps_(&maps) {}
+
+    std::size_t frame_count() const { return maps_->frame_count(); }
+    grid_extents grid() const { return maps_->grid(); }
+
+    /// Whether the pixel shows an object at a place that is known.
+    bool is_covered(frame_index i, pixel p) const {
+        return maps_->is_covered(i, p) && is_finite(maps_->point_at(i, p));
+    }
+    /// The object a covered pixel shows.
+    object_index object_at(frame_index i, pixel p) const { return maps_->object_at(i, p); }
+    /// Canonical coordinates of a covered pixel.
+    std::array<float, dimensions> point_at(frame_index i, pixel p) const { return maps_->point_at(i, p); }
+
+private:
+    Maps const* maps_;
+};
+
+} // namespace genrender

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+// Gaussian white noise over a space of canonical coordinates, at every resolution at once and never stored.
+#pragma once
+
+#include <genrender/core/error.hpp>
+#include <genrender/core/index.hpp>
+#include <genrender/core/random.hpp>
+#include <genrender/noise/brownian_bridge.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// A part of a pixel that looks at the noise of one cell of space.
+template <std::size_t D>
+struct noise_request {
+    std::array<std::uint64_t, D> place{}; ///< fixed-point coordinates, see noise_tree::place_of
+    std::uint32_t level = 0;              ///< the cell's sides are 2^-level of the whole space
+    std::uint32_t pixel = 0;              ///< who looks
+    double share = 0;                     ///< of the pixel, in (0, 1]
+};
+
+/// White noise over the cube [-2^16, 2^16)^D as a tree of cells, each with a value of N(0, 1) a channel that its 2^D
+/// children divide among themselves by a Brownian bridge. Values follow from the seed and the way from the root, so
+/// there is nothing to store, frames can be made in any order, and what is seen from afar is the sum of what is seen
+/// close by: there is no resolution to choose.
+template <std::size_t D>
+class noise_tree {
+public:
+    static constexpr std::uint32_t deepest = 48;
+    static constexpr double half_width = 65536;
+
+    /// The noise of one object's space in one diffusion step; other streams, steps and objects have noise of their own.
+    noise_tree(std::uint64_t seed, random_stream stream, object_index object, std::uint32_t step = 0)
+        : root_(key_of(random_bits(seed, stream, {object.value, step, 0}))) {}
+
+    /// The place of a point. Throws value_error unless every coordinate is finite and in [-2^16, 2^16).
+    static std::array<std::uint64_t, D> place_of(std::array<double, D> const& point) {
+        std::array<std::uint64_t, D> place{};
+        for (std::size_t d = 0; d < D; ++d) {
+            require_value(point[d] >= -half_width && point[d] < half_width, "noise_tree", "canonical coordinate",
+                          point[d], "a number in [-65536, 65536)");
+            place[d] = static_cast<std::uint64_t>((point[d] + half_width) * 0x1p31);
+        }
+        return place;
+    }
+
+    /// The level whose cells are at least `side` > 0 wide, and less than twice that, as far as there are levels.
+    static std::uint32_t level_of(double side) {
+        auto const level = std::floor(std::log2(2 * half_width / side));
+        return static_cast<std::uint32_t>(std::clamp(level, 0.0, double{deepest}));
+    }
+
+    /// Adds to `sums` [pixels, channels] what the requests see: sum over cells of sqrt(share) Y with independent Y of
+    /// N(0, 1). A pixel whose shares sum to 1 over all trees thereby gets a value of N(0, 1), and no two pixels of a
+    /// call share any noise: a cell that several look at is divided among them by their shares, one that contains
+    /// smaller requested cells is divided down to them. `requests` are reordered.
+    void add(std::span<double> sums, std::size_t channels, std::span<noise_request<D>> requests) const {
+        if (!requests.empty()) {
+            walk(sums, channels, requests).run(root_);
+        }
+    }
+
+private:
+    using key = std::array<std::uint32_t, 2>;
+    static constexpr std::size_t children = std::size_t{1} << D;
+
+    static key key_of(std::array<std::uint32_t, 4> const& bits) { return {bits[0], bits[1]}; }
+
+    /// Values 4 * block ... 4 * block + 3 of N(0, 1) of a node and channel.
+    static std::array<double, 4> normals(key const& node, std::size_t block, std::size_t channel) {
+        return four_normals_of(
+            philox({static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(channel), 2, 0}, node));
+    }
+
+    /// What looks at a whole cell, on its way down to where the cell is not divided further.
+    struct look {
+        std::uint32_t pixel;
+        double share;
+    };
+
+    /// One call of add: the way down the tree with all that is kept on it.
+    class walk {
+    public:
+        walk(std::span<double> sums, std::size_t channels, std::span<noise_request<D>> requests)
+            : sums_(sums), channels_(channels), requests_(requests), scratch_(requests.begin(), requests.end()),
+              values_((deepest + 2) * children * channels) {
+            root_shares_.fill(1 / std::sqrt(static_cast<double>(children)));
+        }
+
+        void run(key const& root) {
+            for (std::size_t c = 0; c < channels_; ++c) {
+                values_[c] = normals(root, 0, c)[0];
+            }
+            descend(requests_, scratch_, 0, root, values_.data());
+        }
+
+    private:
+        /// All `requests` lie in the node, whose values are W [channels]; `free` is as many requests of room.
+        void descend(std::span<noise_request<D>> requests, std::span<noise_request<D>> free, std::uint32_t level,
+                     key const& node, double const* W) {
+            // Those who look at the whole cell look at each of its children alike, if it has to be divided.
+            auto const carried = looks_.size();
+            auto const is_deeper = [level](auto const& request) { return request.level > level; };
+            auto const here = std::partition(requests.begin(), requests.end(), is_deeper);
+            for (auto request = here; request != requests.end(); ++request) {
+                looks_.push_back({request->pixel, request->share});
+            }
+            requests = requests.first(static_cast<std::size_t>(here - requests.begin()));
+            if (requests.empty()) {
+                divide(node, W);
+                looks_.resize(carried);
+                return;
+            }
+            std::array<std::size_t, children + 1> ends{};
+            for (auto const& request : requests) {
+                ++ends[child_of(request, level) + 1];
+            }
+            for (std::size_t child = 0; child < children; ++child) {
+                ends[child + 1] += ends[child];
+            }
+            auto places = ends;
+            for (auto const& request : requests) {
+                free[places[child_of(request, level)]++] = request;
+            }
+
+            auto* const values = &values_[(level + 1) * children * channels_];
+            for (std::size_t c = 0; c < channels_; ++c) {
+                std::array<double, children> g{};
+                for (std::size_t block = 0; block < children / 4; ++block) {
+                    auto const drawn = normals(node, block, c);
+                    std::copy(drawn.begin(), drawn.end(), g.begin() + static_cast<std::ptrdiff_t>(4 * block));
+                }
+                bridge(W[c], root_shares_, g);
+                for (std::size_t child = 0; child < children; ++child) {
+                    values[child * channels_ + c] = g[child];
+                }
+            }
+            for (auto& look : looks_) {
+                look.share /= static_cast<double>(children);
+            }
+            auto const looking = looks_.size();
+            for (std::size_t child = 0; child < children; ++child) {
+                auto const count = ends[child + 1] - ends[child];
+                if (count > 0 || looking > 0) {
+                    auto const bits = philox({static_cast<std::uint32_t>(child), 0, 1, 0}, node);
+                    descend(free.subspan(ends[child], count), requests.subspan(ends[child], count), level + 1,
+                            key_of(bits), values + child * channels_);
+                }
+            }
+            for (auto& look : looks_) {
+                look.share *= static_cast<double>(children);
+            }
+            looks_.resize(carried);
+        }
+
+        static std::size_t child_of(noise_request<D> const& request, std::uint32_t level) {
+            std::size_t child = 0;
+            for (std::size_t d = 0; d < D; ++d) {
+                child |= static_cast<std::size_t>(request.place[d] >> (deepest - 1 - level) & 1U) << d;
+            }
+            return child;
+        }
+
+        /// Divides a cell among the pixels that look at it.
+        void divide(key const& node, double const* W) {
+            parts_.assign(looks_.begin(), looks_.end());
+            std::sort(parts_.begin(), parts_.end(), [](auto const& a, auto const& b) { return a.pixel < b.pixel; });
+            std::size_t count = 0;
+            double total = 0;
+            for (auto const& look : parts_) {
+                total += look.share;
+                if (count > 0 && parts_[count - 1].pixel == look.pixel) {
+                    parts_[count - 1].share += look.share;
+                } else {
+                    parts_[count++] = look;
+                }
+            }
+            if (count == 1) {
+                auto const weight = std::sqrt(total);
+                for (std::size_t c = 0; c < channels_; ++c) {
+                    sums_[parts_[0].pixel * channels_ + c] += weight * W[c];
+                }
+                return;
+            }
+            part_shares_.resize(count);
+            for (std::size_t j = 0; j < count; ++j) {
+                part_shares_[j] = std::sqrt(parts_[j].share / total);
+            }
+            for (std::size_t c = 0; c < channels_; ++c) {
+                part_values_.clear();
+                // Numbers after those of the children, since another frame may divide the same cell.
+                for (auto block = children / 4; part_values_.size() < count; ++block) {
+                    auto const drawn = normals(node, block, c);
+                    part_values_.insert(part_values_.end(), drawn.begin(), drawn.end());
+                }
+                part_values_.resize(count);
+                bridge(W[c], part_shares_, part_values_);
+                for (std::size_t j = 0; j < count; ++j) {
+                    sums_[parts_[j].pixel * channels_ + c] += std::sqrt(parts_[j].share) * part_values_[j];
+                }
+            }
+        }
+
+        std::span<double> sums_;
+        std::size_t channels_;
+        std::span<noise_request<D>> requests_;
+        std::vector<noise_request<D>> scratch_;
+        std::vector<double> values_; ///< [levels, children, channels]
+        std::vector<look> looks_;
+        std::vector<look> parts_;
+        std::vector<double> part_shares_;
+        std::vector<double> part_values_;
+        std::array<double, children> root_shares_{};
+    };
+
+    key root_;
+};
+
+} // namespace genrender
