@@ -18,6 +18,7 @@ from safetensors.torch import load_file
 
 import train
 import train_embedder
+from renders import Renders
 
 
 def load_denoiser(folder):
@@ -61,17 +62,17 @@ def main():
     parser.add_argument("--sheet", type=pathlib.Path)
     arguments = parser.parse_args()
 
-    renders = train.Renders(arguments.data)
+    renders = Renders(arguments.data)
     model, embedder = load_denoiser(arguments.weights), load_embedder(arguments.embedder)
     numbers = numpy.arange(min(arguments.count, len(renders)))
-    images, inverse_depth = renders.pictures(numbers)
-    rows = renders.rows(numbers, True, False)
+    images, inverse_depth = renders.pictures(numbers), renders.depths(numbers)
+    rows = train.token_rows(renders, numbers, True, False)
     samples = torch.cat([
         train.decode(train.sample(model, train.hint_of(inverse_depth[part]), rows[part], arguments.guidance,
                                   arguments.steps, seed=int(part[0]))).clamp(0, 1)
         for part in numpy.array_split(numbers, max(1, len(numbers) // 50))])
     objects = torch.from_numpy(renders.objects[numbers] == 255)
-    styles = renders.prompts[numbers, 0].astype(int)
+    styles = renders.prompts[numbers, 0]
 
     texts = embedder.text([[0, 1 + i] for i in range(len(renders.styles))])
     for name, pictures in (("renders", images), ("samples", samples)):

@@ -58,6 +58,9 @@ inline palette draw_ground(random_draw& draw) {
 struct lit_picture {
     tensor<float, 3> image;         ///< [3, height, width], red, green and blue in [0, 1]
     tensor<float, 2> pattern_share; ///< [height, width], the share of the pixel that patterned objects fill
+    tensor<float, 3>
+        inverse_depth; ///< [1, height, width], 1 at the frame's nearest point, 0 at its farthest and in the
+                       ///< sky, the mean over the pixel
 };
 
 namespace detail {
@@ -80,18 +83,20 @@ inline std::vector<glm::vec3> posed_normals(posed_object const& posed) {
     return normals;
 }
 
-/// Values of vertices, interpolated in every pixel: the rasteriser's UV maps of surfaces that have them as their UVs.
-template <class ValuesOf>
-rendered_guidance interpolated(posed_scene scene, grid_extents grid, ValuesOf const& values_of) {
+/// Rest positions, depth and, in place of u, how much each surface faces upwards: what shading reads, in one drawing.
+inline rendered_guidance draw_surfaces(posed_scene scene, grid_extents grid) {
     for (auto& posed : scene.objects) {
         auto surface = std::make_shared<mesh>(*posed.surface);
+        auto const normals = posed_normals(posed);
         for (std::size_t i = 0; i < surface->uvs.size(); ++i) {
-            surface->uvs[i] = values_of(posed, i);
+            surface->uvs[i] = {normals[i].y, 0};
         }
         posed.surface = std::move(surface);
     }
-    rendered_guidance guidance{uv_maps(1, grid), depth_maps(1, grid)};
+    rendered_guidance guidance{uv_maps(1, grid), depth_maps(1, grid),
+                               tensor<float, 4>::from_shape({1, grid.height, grid.width, 3})};
     rasterize_frame(frame_view(guidance, {0}), scene);
+    guidance.depth.coverage = guidance.uv.coverage;
     return guidance;
 }
 
@@ -146,31 +151,20 @@ inline lit_picture render_lit(posed_scene const& scene, scene_paint const& paint
                     std::array{scene.objects.size()});
     grid_extents const fine{grid.height * static_cast<std::uint32_t>(samples),
                             grid.width * static_cast<std::uint32_t>(samples)};
-    std::vector<std::vector<glm::vec3>> normals;
-    for (auto const& posed : scene.objects) {
-        normals.push_back(detail::posed_normals(posed));
-    }
     std::vector<std::size_t> place_of; // of each object number in the scene
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
         auto const number = std::size_t{scene.objects[i].object.value};
         place_of.resize(std::max(place_of.size(), number + 1));
         place_of[number] = i;
     }
-    auto const normals_of = [&](posed_object const& posed) -> auto const& {
-        return normals[place_of[posed.object.value]];
-    };
-    auto const xy = detail::interpolated(scene, fine, [](posed_object const& posed, std::size_t i) {
-        return glm::vec2(posed.surface->positions[i].x, posed.surface->positions[i].y);
-    });
-    auto const z_and_up = detail::interpolated(scene, fine, [&](posed_object const& posed, std::size_t i) {
-        return glm::vec2(posed.surface->positions[i].z, normals_of(posed)[i].y);
-    });
+    auto const seen = detail::draw_surfaces(scene, fine);
     detail::light_from_above const light(scene, target, shadow_radius);
 
     image_plane const plane(scene.camera, fine);
     auto const to_world = glm::inverse(scene.camera.view);
     lit_picture picture{tensor<float, 3>::from_shape({3, grid.height, grid.width}),
-                        tensor<float, 2>::from_shape({grid.height, grid.width})};
+                        tensor<float, 2>::from_shape({grid.height, grid.width}),
+                        cell_means(sequence_inverse_depth(seen.depth), grid)};
     picture.image.fill(0);
     picture.pattern_share.fill(0);
     auto const part = 1 / static_cast<float>(samples * samples);
@@ -180,12 +174,12 @@ inline lit_picture render_lit(posed_scene const& scene, scene_paint const& paint
             auto const ray = glm::vec3(to_world * glm::vec4(centre.x, centre.y, -1, 0));
             auto const height = glm::clamp(glm::normalize(ray).y * 1.8f + 0.08f, 0.0f, 1.0f);
             auto colour = glm::mix(paint.horizon, paint.zenith, height);
-            if (xy.uv.coverage(0, row, column) != 0) {
-                auto const place = place_of[xy.uv.object(0, row, column)];
-                auto const depth = xy.depth.depth(0, row, column);
-                auto const rest = glm::vec3(xy.uv.uv(0, row, column, 0), xy.uv.uv(0, row, column, 1),
-                                            z_and_up.uv.uv(0, row, column, 0));
-                auto up = z_and_up.uv.uv(0, row, column, 1);
+            if (seen.uv.coverage(0, row, column) != 0) {
+                auto const place = place_of[seen.uv.object(0, row, column)];
+                auto const depth = seen.depth.depth(0, row, column);
+                auto const rest = glm::vec3(seen.position(0, row, column, 0), seen.position(0, row, column, 1),
+                                            seen.position(0, row, column, 2));
+                auto up = seen.uv.uv(0, row, column, 0);
                 auto const world = glm::vec3(to_world[3]) + ray * depth;
                 // Both sides of a plane are seen; light falls on the upper one.
                 up = paint.is_patterned[place] != 0 ? up : std::abs(up);
@@ -204,17 +198,6 @@ inline lit_picture render_lit(posed_scene const& scene, scene_paint const& paint
         }
     }
     return picture;
-}
-
-/// Inverse depth [height, width] of a frame by itself: 1 at the nearest point, 0 at the farthest and in the sky, each
-/// pixel the mean of `samples` x `samples` points.
-inline tensor<float, 3> inverse_depth_of(posed_scene const& scene, grid_extents grid, std::size_t samples) {
-    grid_extents const fine{grid.height * static_cast<std::uint32_t>(samples),
-                            grid.width * static_cast<std::uint32_t>(samples)};
-    rendered_guidance guidance{uv_maps(1, fine), depth_maps(1, fine)};
-    rasterize_frame(frame_view(guidance, {0}), scene);
-    guidance.depth.coverage = guidance.uv.coverage;
-    return cell_means(sequence_inverse_depth(guidance.depth), grid);
 }
 
 } // namespace genrender::examples

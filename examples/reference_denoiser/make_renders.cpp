@@ -44,12 +44,13 @@ struct block {
           prompts(count * 2) {}
 };
 
-std::uint8_t byte_of(float share) { return static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0f, 1.0f) * 255)); }
+std::uint8_t byte_of(float share) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0f, 1.0f) * 255));
+}
 
 void draw_example(block& into, std::size_t place, std::uint64_t seed, std::uint32_t number) {
     auto const drawn = draw_training_scene(seed, number);
     auto const picture = render_lit(drawn.scene, drawn.paint, grid, samples, drawn.target, drawn.shadow_radius);
-    auto const near = inverse_depth_of(drawn.scene, grid, samples);
     for (std::size_t p = 0; p < grid.size(); ++p) {
         auto const row = p / grid.width;
         auto const column = p % grid.width;
@@ -57,7 +58,7 @@ void draw_example(block& into, std::size_t place, std::uint64_t seed, std::uint3
             into.images[(place * grid.size() + p) * 3 + c] = byte_of(picture.image(c, row, column));
         }
         into.inverse_depth[place * grid.size() + p] =
-            static_cast<std::uint16_t>(std::lround(near(0, row, column) * 65535));
+            static_cast<std::uint16_t>(std::lround(picture.inverse_depth(0, row, column) * 65535));
         into.objects[place * grid.size() + p] = byte_of(picture.pattern_share(row, column));
     }
     into.prompts[2 * place] = static_cast<std::uint8_t>(drawn.style);
@@ -85,7 +86,8 @@ int run(int argc, char** argv) {
     auto const open = [&](char const* name) {
         std::ofstream file(folder / name, std::ios::binary);
         if (!file) {
-            throw file_error((folder / name).string() + ": cannot be written, expected a folder where files may be made");
+            throw file_error((folder / name).string() +
+                             ": cannot be written, expected a folder where files may be made");
         }
         return file;
     };
@@ -117,8 +119,8 @@ int run(int argc, char** argv) {
         }
     }
     std::printf("\n");
-    nlohmann::json const description{{"count", count},         {"height", grid.height},  {"width", grid.width},
-                                     {"styles", style_words},  {"colours", colour_words}, {"seed", seed}};
+    nlohmann::json const description{{"count", count},        {"height", grid.height},   {"width", grid.width},
+                                     {"styles", style_words}, {"colours", colour_words}, {"seed", seed}};
     open("renders.json") << description.dump(2) << '\n';
     return 0;
 }

@@ -39,9 +39,9 @@ inline float gradient_noise(std::uint32_t seed, glm::vec3 p) {
     for (unsigned corner = 0; corner < 8; ++corner) {
         auto const step = glm::vec3(corner & 1U, corner >> 1U & 1U, corner >> 2U);
         auto const at = glm::ivec3(cell + step);
-        auto const bits = philox({static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y),
-                                  static_cast<std::uint32_t>(at.z), 0},
-                                 {seed, 0});
+        auto const bits = philox(
+            {static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y), static_cast<std::uint32_t>(at.z), 0},
+            {seed, 0});
         auto const gradient = glm::vec3(bits[0], bits[1], bits[2]) * 0x1p-31f - 1.0f;
         auto const side = glm::mix(1.0f - weight, weight, step);
         sum += side.x * side.y * side.z * glm::dot(gradient, inside - step);
@@ -62,8 +62,8 @@ inline std::vector<glm::vec3> scattered_points(random_draw& draw, mesh const& su
     auto const tries = std::min(4000, static_cast<int>(30 * area / (spacing * spacing)) + 30);
     for (int i = 0; i < tries; ++i) {
         auto const place = std::upper_bound(area_until.begin(), area_until.end(), draw.uniform(0, area));
-        auto const number = std::min<std::size_t>(static_cast<std::size_t>(place - area_until.begin()),
-                                                  surface.triangles.size() - 1);
+        auto const number =
+            std::min<std::size_t>(static_cast<std::size_t>(place - area_until.begin()), surface.triangles.size() - 1);
         auto const& t = surface.triangles[number];
         auto u = draw.uniform(0, 1);
         auto v = draw.uniform(0, 1);
@@ -71,8 +71,7 @@ inline std::vector<glm::vec3> scattered_points(random_draw& draw, mesh const& su
             u = 1 - u;
             v = 1 - v;
         }
-        auto const p =
-            surface.positions[t.x] * (1 - u - v) + surface.positions[t.y] * u + surface.positions[t.z] * v;
+        auto const p = surface.positions[t.x] * (1 - u - v) + surface.positions[t.y] * u + surface.positions[t.z] * v;
         if (std::none_of(points.begin(), points.end(), [&](auto const& q) { return glm::distance(p, q) < spacing; })) {
             points.push_back(p);
         }
@@ -90,7 +89,7 @@ public:
         shift_ = glm::vec3(draw.uniform(0, 64), draw.uniform(0, 64), draw.uniform(0, 64));
         noise_ = draw.below(1U << 30U);
         if (style == surface_style::dots) {
-            dots_ = scattered_points(draw, surface, 1.9f * feature);
+            dots_ = scattered_points(draw, surface, 1.5f * feature);
         }
     }
 
@@ -111,14 +110,15 @@ public:
                 auto const way = dot - p;
                 nearest = std::min(nearest, glm::dot(way, way));
             }
-            return nearest < 0.38f * feature_ * feature_ ? colours_.second : colours_.first;
+            return nearest < 0.27f * feature_ * feature_ ? colours_.second : colours_.first;
         }
         case surface_style::camo: {
             auto const place = scaled * 0.62f + shift_;
             auto const height = gradient_noise(noise_, place) + 0.35f * gradient_noise(noise_ + 1, place * 2.1f);
             return height > 0.11f ? colours_.second : height < -0.13f ? colours_.third : colours_.first;
         }
-        case surface_style::plain: break;
+        case surface_style::plain:
+            break;
         }
         return colours_.first;
     }

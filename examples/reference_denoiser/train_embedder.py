@@ -20,10 +20,12 @@ import torch
 import torch.nn.functional as F
 from safetensors.torch import save_file
 
+from renders import UNKNOWN, Renders
+
 CHANNELS = (24, 48, 96, 96)  # of the four blocks; all but the first halve height and width
 GROUPS = 8
 DIMENSION = 64
-UNKNOWN = 255  # number of the colour of pictures that are not of one
+KEPT_APART = 100  # one picture in so many is not trained on
 
 
 class Block(torch.nn.Module):
@@ -80,27 +82,6 @@ class PromptEmbedder(torch.nn.Module):
 
     def tensors(self):
         return {name: value.detach() for name, value in self.state_dict().items() if name != "log_scale"}
-
-
-class Renders:
-    """The files of make_renders that hold pictures and prompts."""
-
-    def __init__(self, folder):
-        description = json.loads((folder / "renders.json").read_text())
-        n, height, width = description["count"], description["height"], description["width"]
-        self.styles, self.colours = description["styles"], description["colours"]
-        self.words = self.styles + self.colours
-        self.images = numpy.memmap(folder / "images.u8", numpy.uint8, "r", shape=(n, height, width, 3))
-        self.prompts = numpy.fromfile(folder / "prompts.u8", numpy.uint8).reshape(n, 2).astype(numpy.int64)
-        self.kept_apart = max(1, n // 100)
-
-    def pictures(self, numbers):
-        return torch.from_numpy(self.images[numbers]).permute(0, 3, 1, 2).float() / 255
-
-    def text(self, style, colour):
-        """Rows of a text that names a style, a colour or both; None leaves one out."""
-        rows = [0] if style is None else [0, 1 + int(style)]
-        return rows if colour is None else rows + [1 + len(self.styles) + int(colour)]
 
 
 def augmented(images, random):
@@ -194,9 +175,9 @@ def main():
     arguments.out.mkdir(parents=True, exist_ok=True)
 
     renders = Renders(arguments.data)
-    trained_on = len(renders.images) - renders.kept_apart
+    trained_on = len(renders) - max(1, len(renders) // KEPT_APART)
     batch = min(arguments.batch, trained_on)
-    held_out = numpy.arange(trained_on, len(renders.images))
+    held_out = numpy.arange(trained_on, len(renders))
     model = PromptEmbedder(len(renders.words))
     matrices = [p for p in model.parameters() if p.dim() > 1]
     others = [p for p in model.parameters() if p.dim() <= 1]

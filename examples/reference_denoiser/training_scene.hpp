@@ -140,7 +140,7 @@ inline training_scene draw_training_scene(std::uint64_t seed, std::uint32_t numb
     }
 
     // Shapes of about unit size around the origin, few enough to fill the picture.
-    constexpr std::array<std::uint32_t, 8> counts{1, 1, 2, 2, 3, 3, 4, 6};
+    constexpr std::array<std::uint32_t, 8> counts{1, 1, 1, 2, 2, 2, 3, 4};
     auto const count = counts[draw.below(8)];
     auto const spread = count == 1 ? 0.0f : 0.75f * std::sqrt(static_cast<float>(count));
     std::vector<posed_object> things;
@@ -178,7 +178,7 @@ inline training_scene draw_training_scene(std::uint64_t seed, std::uint32_t numb
     auto const radius = glm::length(upper - lower) * 0.5f;
     drawn.shadow_radius = radius * 1.6f;
     auto const fov = glm::radians(draw.uniform(30, 50));
-    auto const distance = radius / std::tan(fov / 2) * draw.uniform(0.5f, 0.95f);
+    auto const distance = radius / std::tan(fov / 2) * draw.uniform(0.5f, 0.85f);
     auto const azimuth = draw.uniform(0, 6.2832f);
     auto const elevation = glm::radians(draw.uniform(4, 38));
     auto const away = glm::vec3(std::cos(azimuth) * std::cos(elevation), std::sin(elevation),

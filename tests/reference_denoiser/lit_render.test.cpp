@@ -77,7 +77,7 @@ TEST_SUITE("reference_denoiser/lit_render") {
     }
 
     TEST_CASE("inverse depth is one at the nearest point") {
-        auto const near = inverse_depth_of(small_world(true).scene, {16, 16}, 4);
+        auto const near = small_world(true).picture().inverse_depth;
         auto highest = 0.0f;
         for (auto const value : near) {
             CHECK(value >= 0);
