@@ -49,6 +49,10 @@ struct options {
     std::size_t seeds = 3;
     std::size_t frames = 24;
     std::size_t steps = 10;
+    std::size_t keyframes = 4;
+    float alpha = 0.7f;
+    std::vector<std::string> groups = paper_groups();
+    std::vector<std::string> methods;
     std::uint32_t size = 64;
     std::size_t threads = 0;
 };
@@ -60,13 +64,30 @@ struct job {
     std::size_t method; ///< in the list of methods; their number stands for the painted render
 };
 
-/// What a job gave; the frames are kept for the pictures.
+/// Whether the pictures show a job: those of the first prompt and seed.
+bool is_shown(job const& job) { return job.prompt == 0 && job.seed == 0; }
+
+/// What a job gave, with its frames if the pictures show it.
 struct outcome {
     measures figures;
-    tensor<float, 4> images;
+    tensor<float, 4> images = tensor<float, 4>::from_shape({0, 3, 1, 1});
 };
 
 std::string label_of(compared_method<network> const& method) { return method.name + ", " + method.noise + " noise"; }
+
+/// The methods of the groups that are told, and of those the ones whose names are told, if any.
+std::vector<compared_method<network>> chosen_methods(options const& told) {
+    auto methods = compared_methods<network>();
+    auto const is_among = [](std::string const& name, std::vector<std::string> const& names) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    std::erase_if(methods, [&](auto const& method) {
+        return !is_among(method.group, told.groups) || (!told.methods.empty() && !is_among(method.name, told.methods));
+    });
+    require_value(!methods.empty(), "evaluate", "--groups or --methods",
+                  told.methods.empty() ? told.groups.front() : told.methods.front(), "names as --help tells");
+    return methods;
+}
 
 /// Settings that all methods share. None of them was chosen by looking at these scenes.
 render_settings<float> shared_settings(options const& told, std::uint64_t seed) {
@@ -75,7 +96,8 @@ render_settings<float> shared_settings(options const& told, std::uint64_t seed) 
     settings.method = sampler::dpmpp_2m;
     settings.noise.seed = seed;
     settings.keyframes.seed = seed;
-    settings.keyframes.count = std::min<std::size_t>(4, told.frames);
+    settings.keyframes.count = std::min(told.keyframes, told.frames);
+    settings.alpha = [alpha = told.alpha](std::size_t, attention_site const&) { return alpha; };
     return settings;
 }
 
@@ -103,14 +125,14 @@ std::vector<outcome> run_scene(options const& told, evaluation_scene const& scen
     loop(jobs.size(), [&](std::size_t j) {
         auto const& job = jobs[j];
         auto const style = style_number(told.prompts[job.prompt]);
-        auto& result = outcomes[j];
-        if (job.method == methods.size()) {
-            result.images = painted_frames(scene, static_cast<surface_style>(style), job.seed, sequential_loop{});
-        } else {
-            result.images =
-                decoded(methods[job.method].run(phis[job.prompt], scene.uv(), shared_settings(told, job.seed)));
+        auto images =
+            job.method == methods.size()
+                ? painted_frames(scene, static_cast<surface_style>(style), job.seed, sequential_loop{})
+                : decoded(methods[job.method].run(phis[job.prompt], scene.uv(), shared_settings(told, job.seed)));
+        outcomes[j].figures = measures_of(to_view(std::as_const(images)), scene, embedder, texts, style);
+        if (is_shown(job)) {
+            outcomes[j].images = std::move(images);
         }
-        result.figures = measures_of(to_view(std::as_const(result.images)), scene, embedder, texts, style);
         std::lock_guard const lock(mutex);
         std::printf("\r%s: %zu of %zu", scene.name.c_str(), ++done, jobs.size());
         std::fflush(stdout);
@@ -132,7 +154,7 @@ void write_contact_sheet(std::filesystem::path const& path, std::vector<std::str
             cells.push_back(rgb_picture(to_view(*runs[r])[i]));
             // The first two frames of a row carry its name and its noise.
             auto const comma = std::min(labels[r].rfind(", "), labels[r].size());
-            texts.push_back(c == 0                                ? labels[r].substr(0, comma)
+            texts.push_back(c == 0                               ? labels[r].substr(0, comma)
                             : c == 1 && comma < labels[r].size() ? labels[r].substr(comma + 2)
                                                                  : "");
         }
@@ -161,7 +183,8 @@ void write_time_slices(std::filesystem::path const& path, std::vector<std::strin
 /// The paper's tables 1 and 2 with what was measured beside what it reports.
 std::string paper_tables(std::vector<run_figures> const& runs) {
     std::ostringstream text;
-    text << "| Method | Frame consistency | paper | Prompt fidelity | paper | Recognised |\n|---|---|---|---|---|---|\n";
+    text
+        << "| Method | Frame consistency | paper | Prompt fidelity | paper | Recognised |\n|---|---|---|---|---|---|\n";
     for (auto const& row : paper_rows) {
         auto const figure = [&](char const* measure) {
             return figure_text(figure_of(runs, std::string(row.method), measure));
@@ -193,8 +216,7 @@ std::string consistency_csv(std::vector<run_figures> const& runs) {
     text << "method,interval,measured,standard_error,paper\n";
     for (auto const& row : paper_rows) {
         for (std::size_t k = 0; k < intervals.size(); ++k) {
-            auto const figure =
-                figure_of(runs, std::string(row.method), "consistency_" + std::to_string(intervals[k]));
+            auto const figure = figure_of(runs, std::string(row.method), "consistency_" + std::to_string(intervals[k]));
             text << row.name << ',' << intervals[k] << ',' << (figure ? examples::detail::decimal(figure->mean, 6) : "")
                  << ',' << (figure && figure->error ? examples::detail::decimal(*figure->error, 6) : "") << ','
                  << examples::detail::decimal(row.consistency[k]) << '\n';
@@ -204,9 +226,8 @@ std::string consistency_csv(std::vector<run_figures> const& runs) {
 }
 
 std::string all_tables(options const& told, std::vector<run_figures> const& runs) {
-    std::vector<table_column> const errors{{"error_1", "RMSE 1"},   {"error_5", "5"},
-                                           {"error_10", "10"},      {"error_15", "15"},
-                                           {"error_20", "20"},      {"contrast", "Contrast"},
+    std::vector<table_column> const errors{{"error_1", "RMSE 1"},     {"error_5", "5"},   {"error_10", "10"},
+                                           {"error_15", "15"},        {"error_20", "20"}, {"contrast", "Contrast"},
                                            {"sharpness", "Sharpness"}};
     std::vector<table_column> const object_errors{{"object_error_1", "RMSE 1"},
                                                   {"object_error_5", "5"},
@@ -215,6 +236,11 @@ std::string all_tables(options const& told, std::vector<run_figures> const& runs
                                                   {"object_error_20", "20"},
                                                   {"relative_object_error_1", "RMSE 1 / contrast"},
                                                   {"relative_object_error_10", "RMSE 10 / contrast"}};
+    std::vector<table_column> const pairs{{"object_pairs_1", "Pairs 1"},
+                                          {"object_pairs_5", "5"},
+                                          {"object_pairs_10", "10"},
+                                          {"object_pairs_15", "15"},
+                                          {"object_pairs_20", "20"}};
     std::vector<table_column> const embedded{{"consistency_1", "Consistency 1"}, {"consistency_5", "5"},
                                              {"consistency_10", "10"},           {"consistency_20", "20"},
                                              {"fidelity", "Fidelity"},           {"recognition", "Recognised"}};
@@ -230,27 +256,29 @@ std::string all_tables(options const& told, std::vector<run_figures> const& runs
                                                 {"fidelity", "Fidelity"},
                                                 {"sharpness", "Sharpness"},
                                                 {"colour_flicker", "Mean colour"}};
-    std::vector<std::string> const all{"render", "method", "noise", "ablation"};
+    auto all = told.groups;
+    all.insert(all.begin(), "render");
     std::ostringstream text;
-    text << "# Tables 1 and 2 of the paper\n\n"
-         << told.scenes.size() << " scenes, " << told.prompts.size() << " prompts, " << told.seeds << " seeds, "
-         << told.frames << " frames, " << told.steps
-         << " steps; mean ± standard error over runs. The paper's figures are CLIP's, those measured here the reference "
-            "embedder's.\n\n"
-         << paper_tables(runs) << "\n# Correspondence error, all surfaces\n\n"
-         << markdown_table(runs, all, errors) << "\n# Correspondence error, objects without the ground\n\n"
-         << markdown_table(runs, all, object_errors) << "\n# Frame consistency and prompt fidelity\n\n"
-         << markdown_table(runs, all, embedded) << "\n# Flicker\n\n"
-         << markdown_table(runs, all, flickers) << "\n# Ours against the others, paired runs\n\n"
-         << difference_table(runs, "Ours, UV noise", std::vector<std::string>{"method", "noise", "ablation"},
-                             differences);
+    text
+        << "# Tables 1 and 2 of the paper\n\n"
+        << told.scenes.size() << " scenes, " << told.prompts.size() << " prompts, " << told.seeds << " seeds, "
+        << told.frames << " frames, " << told.steps
+        << " steps; mean ± standard error over runs. The paper's figures are CLIP's, those measured here the reference "
+           "embedder's.\n\n"
+        << paper_tables(runs) << "\n# Correspondence error, all surfaces\n\n"
+        << markdown_table(runs, all, errors) << "\n# Correspondence error, objects without the ground\n\n"
+        << markdown_table(runs, all, object_errors) << "\nPairs of pixels behind each error of a run:\n\n"
+        << scene_table(runs, pairs) << "\n# Frame consistency and prompt fidelity\n\n"
+        << markdown_table(runs, all, embedded) << "\n# Flicker\n\n"
+        << markdown_table(runs, all, flickers) << "\n# Ours against the others, paired runs\n\n"
+        << difference_table(runs, "Ours, UV noise", told.groups, differences);
     return text.str();
 }
 
 void evaluate(options const& told) {
     threaded_loop const loop(told.threads);
     auto const embedder = reference_embedder<float>::from_folder(told.embedder);
-    auto const methods = compared_methods<network>();
+    auto const methods = chosen_methods(told);
     std::vector<job> jobs;
     for (std::size_t prompt = 0; prompt < told.prompts.size(); ++prompt) {
         style_number(told.prompts[prompt]);
@@ -273,7 +301,7 @@ void evaluate(options const& told) {
             auto const label = is_render ? "Painted render" : label_of(methods[jobs[j].method]);
             runs.push_back({label, is_render ? "render" : methods[jobs[j].method].group, scene.name,
                             told.prompts[jobs[j].prompt], jobs[j].seed, outcomes[j].figures});
-            if (jobs[j].prompt == 0 && jobs[j].seed == 0) {
+            if (is_shown(jobs[j])) {
                 labels.push_back(label);
                 shown.push_back(&outcomes[j].images);
             }
@@ -304,6 +332,11 @@ int main(int argc, char** argv) {
         app.add_option("--seeds", told.seeds, "Runs of each scene and prompt")->capture_default_str();
     app.add_option("--frames", told.frames, "Frames of an animation")->capture_default_str();
     auto const* const steps = app.add_option("--steps", told.steps, "Denoising steps")->capture_default_str();
+    app.add_option("--keyframes", told.keyframes, "Keyframes of a step")->capture_default_str();
+    app.add_option("--alpha", told.alpha, "Weight of the blended features (eq. 6)")->capture_default_str();
+    app.add_option("--groups", told.groups, "Of method, noise, ablation and correspondence (texels of any resolution)")
+        ->capture_default_str();
+    app.add_option("--methods", told.methods, "Names as in the tables; all of the groups unless told");
     app.add_option("--size", told.size, "Height and width of the images")->capture_default_str();
     app.add_option("--threads", told.threads, "Threads; 0 = all of the machine")->capture_default_str();
     bool is_quick = false;

@@ -36,6 +36,35 @@ namespace genrender::examples {
 /// Whether an object is more than the ground, which is number 0 in the built-in scenes.
 inline bool stands_out(object_index object) { return object.value != 0; }
 
+/// An animation through a longer lens: the middle `share` of its pictures' height and width, in (0, 1]. A model of
+/// animation.
+class close_up {
+public:
+    close_up(scenes::any_animation scene, float share) : scene_(std::move(scene)), share_(share) {}
+
+    std::size_t frame_count() const { return scene_.frame_count(); }
+    posed_scene frame(frame_index i) const {
+        auto posed = scene_.frame(i);
+        posed.camera.vertical_fov = 2 * std::atan(share_ * std::tan(posed.camera.vertical_fov / 2));
+        return posed;
+    }
+
+private:
+    scenes::any_animation scene_;
+    float share_;
+};
+
+/// A built-in scene as it is compared: so close that patterns as coarse as a small image needs still repeat on its
+/// objects, and with a camera that goes around no faster than 5 degrees a frame at 24 frames, so that frames 20 apart
+/// still show some of the same surfaces. Throws as make_scene does.
+inline scenes::any_animation compared_animation(std::string const& name, std::size_t frames) {
+    if (name == "camera_rotation") {
+        return scenes::any_animation(
+            close_up(scenes::any_animation(scenes::camera_rotation(frames, glm::radians(120.0f))), 0.6f));
+    }
+    return scenes::any_animation(close_up(scenes::make_scene(name, frames), name == "bouncing_balls" ? 0.5f : 0.8f));
+}
+
 /// One of the built-in scenes, rasterised at four times the size of its images. None of them can be drawn as a scene of
 /// the training data: spheres, cylinders and capsules do not occur there, nor does the mannequin, nor any motion.
 struct evaluation_scene {
@@ -54,13 +83,12 @@ struct evaluation_scene {
 template <parallel_loop Loop>
 evaluation_scene make_evaluation_scene(std::string const& name, std::size_t frames, grid_extents image,
                                        Loop const& loop) {
-    auto animation = scenes::make_scene(name, frames);
+    auto animation = compared_animation(name, frames);
     grid_extents const fine{4 * image.height, 4 * image.width};
     auto guidance = rasterize(animation, fine, loop);
     auto inverse_depth = cell_means(sequence_inverse_depth(guidance.depth), image);
     pixel_correspondence pixels(to_uv_view(guidance.uv), image, 0.25, loop);
-    return {name,           std::move(animation),     image,
-            std::move(guidance), std::move(inverse_depth), std::move(pixels)};
+    return {name, std::move(animation), image, std::move(guidance), std::move(inverse_depth), std::move(pixels)};
 }
 
 /// The middle of the box around all that stands out, and half its diagonal.

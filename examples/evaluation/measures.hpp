@@ -51,6 +51,7 @@ measures measures_of(strided_view<float const, 4> images, evaluation_scene const
     for (auto const& error : correspondence_errors(images, scene.pixels, intervals, stands_out)) {
         auto const name = "object_error_" + std::to_string(error.interval);
         set(name, error.error);
+        set("object_pairs_" + std::to_string(error.interval), static_cast<double>(error.pairs));
         if (error.error && figures["contrast"] > 0) {
             set("relative_" + name, *error.error / figures["contrast"]);
         }

@@ -10,6 +10,7 @@
 #include <genrender/guidance/uv_maps_view.hpp>
 #include <genrender/pipeline/render.hpp>
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
@@ -22,7 +23,7 @@ template <class Network>
 struct compared_method {
     std::string name;  ///< as the paper writes it
     std::string noise; ///< UV, fixed or independent
-    std::string group; ///< method, noise or ablation
+    std::string group; ///< method, noise, ablation or correspondence
     /// The clean latents of all frames for the settings that all methods share.
     std::function<latents<float>(Network const&, uv_maps_view const&, render_settings<float>)> run;
 };
@@ -32,8 +33,12 @@ inline std::string noise_name(noise_kind kind) {
     return kind == noise_kind::uv ? "UV" : kind == noise_kind::fixed ? "fixed" : "independent";
 }
 
-/// The paper's methods as it runs them, then every baseline with our method's noise, then the ablations. What they
-/// share, a caller sets: seeds, steps, sampler, keyframes and layers.
+/// The groups of compared_methods that the paper's comparison holds.
+inline std::vector<std::string> paper_groups() { return {"method", "noise", "ablation"}; }
+
+/// The paper's methods as it runs them, then every baseline with our method's noise, then the ablations, then the
+/// literal texels of features and of noise that the library's own correspondence and noise replace. What they share, a
+/// caller sets: seeds, steps, sampler, keyframes and layers.
 template <class Network>
 std::vector<compared_method<Network>> compared_methods() {
     using settings_type = render_settings<float>;
@@ -51,11 +56,11 @@ std::vector<compared_method<Network>> compared_methods() {
                            }});
     };
     auto const add_baseline = [&](std::string name, std::string group, noise_kind noise, auto method) {
-        methods.push_back({std::move(name), noise_name(noise), std::move(group),
-                           [run, noise, method](Network const& phi, uv_maps_view const& UV,
-                                                settings_type const& settings) {
-                               return run(method, phi, UV, baseline_settings(settings, noise));
-                           }});
+        methods.push_back(
+            {std::move(name), noise_name(noise), std::move(group),
+             [run, noise, method](Network const& phi, uv_maps_view const& UV, settings_type const& settings) {
+                 return run(method, phi, UV, baseline_settings(settings, noise));
+             }});
     };
     auto const add_ours = [&](std::string name, std::string group, noise_kind noise, auto change) {
         methods.push_back({std::move(name), noise_name(noise), std::move(group),
@@ -85,6 +90,36 @@ std::vector<compared_method<Network>> compared_methods() {
     add_ours("Ours", "ablation", noise_kind::independent, as_it_is);
     add_ours("No AdaIN", "ablation", noise_kind::uv,
              [](settings_type& settings) { settings.normalization.enabled = false; });
+
+    auto const add_variant = [&](std::string name, std::string noise, auto change) {
+        add_ours(std::move(name), "correspondence", noise_kind::uv, change);
+        methods.back().noise = std::move(noise);
+    };
+    auto const by_texels = [](settings_type& settings, std::size_t T) {
+        settings.correspondence.kind = correspondence_kind::texel_grid;
+        settings.correspondence.texels.T = T;
+    };
+    auto const read_noise = [](settings_type& settings, noise_reading reading, std::size_t T) {
+        settings.noise.reading = reading;
+        settings.noise.T = T;
+    };
+    for (std::size_t const T : {64U, 256U, 1024U, 4096U}) {
+        add_variant("Texels " + std::to_string(T), "UV",
+                    [by_texels, T](settings_type& settings) { by_texels(settings, T); });
+    }
+    for (std::size_t const T : {64U, 256U, 1024U, 4096U}) {
+        add_variant("Ours", "nearest " + std::to_string(T), [read_noise, T](settings_type& settings) {
+            read_noise(settings, noise_reading::nearest_texel, T);
+        });
+    }
+    add_variant("Ours", "bilinear matched",
+                [read_noise](settings_type& settings) { read_noise(settings, noise_reading::bilinear_texel, 0); });
+    add_variant("Texels matched", "nearest matched", [by_texels, read_noise](settings_type& settings) {
+        by_texels(settings, 0);
+        read_noise(settings, noise_reading::nearest_texel, 0);
+    });
+    add_variant("Average by quality", "UV",
+                [](settings_type& settings) { settings.average = texel_average::by_quality; });
     return methods;
 }
 

@@ -142,6 +142,26 @@ inline std::string difference_table(std::span<run_figures const> runs, std::stri
     return text.str();
 }
 
+/// A Markdown table of what depends on the scene and not on the method: scenes as rows, the first run's figures.
+inline std::string scene_table(std::span<run_figures const> runs, std::span<table_column const> columns) {
+    std::ostringstream text;
+    text << detail::markdown_head("Scene", columns);
+    std::vector<std::string> done;
+    for (auto const& run : runs) {
+        if (std::find(done.begin(), done.end(), run.scene) != done.end()) {
+            continue;
+        }
+        done.push_back(run.scene);
+        text << "| " << run.scene << " |";
+        for (auto const& column : columns) {
+            auto const has = run.figures.contains(column.measure);
+            text << ' ' << (has ? detail::decimal(run.figures.at(column.measure), 0) : "-") << " |";
+        }
+        text << '\n';
+    }
+    return text.str();
+}
+
 /// Every run on a line of its own, with all measures of any run as columns.
 inline std::string runs_csv(std::span<run_figures const> runs) {
     std::map<std::string, bool> names;

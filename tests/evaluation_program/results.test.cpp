@@ -41,6 +41,11 @@ TEST_SUITE("evaluation_program/results") {
               "| ours minus | RMSE |\n|---|---|\n| theirs | -0.3000 |\n");
     }
 
+    TEST_CASE("a table of scenes has a row for each and the figures of its first run") {
+        CHECK(scene_table(three_runs(), std::vector<table_column>{{"sharp", "Sharp"}, {"pairs", "Pairs"}}) ==
+              "| Scene | Sharp | Pairs |\n|---|---|---|\n| walk | 1 | - |\n");
+    }
+
     TEST_CASE("every run is a line with empty fields where it has no figure") {
         CHECK(runs_csv(three_runs()) == "group,method,scene,prompt,seed,error,sharp\n"
                                         "method,\"ours\",walk,dots,0,0.100000,1.000000\n"
