@@ -3,9 +3,9 @@
 #pragma once
 
 #include <genrender/core/parallel.hpp>
+#include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/inspection/frame_inspection.hpp>
 #include <genrender/inspection/object_check.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,10 +2,10 @@
 // [GR sec. 3] What can be wrong with one pixel of the maps: a seam beside it, a blend of two surfaces, a point shown twice.
 #pragma once
 
-#include <genrender/inspection/screen_search.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/inspection/finite_maps.hpp>
+#include <genrender/inspection/screen_search.hpp>
 
 #include <algorithm>
 #include <array>

@@ -4,15 +4,16 @@
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
-#include <genrender/inspection/map_check.hpp>
-#include <genrender/inspection/screen_search.hpp>
 #include <genrender/correspondence/surface_correspondence.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/inspection/finite_maps.hpp>
-#include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/inspection/grid_check.hpp>
+#include <genrender/inspection/map_check.hpp>
 #include <genrender/inspection/map_recommendations.hpp>
 #include <genrender/inspection/recommendation.hpp>
+#include <genrender/inspection/screen_search.hpp>
+#include <genrender/keyframes/draw_keyframes.hpp>
+#include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 
 #include <algorithm>
@@ -54,13 +55,12 @@ struct preflight_report {
 
 namespace detail {
 
-/// Draws the keyframes of some steps of the window, or notes why that cannot be.
+/// Draws the keyframes of some steps that have them, or notes why that cannot be.
 template <class Real>
 void draw_sample_steps(preflight_report& report, render_settings<Real> const& settings, std::size_t most) {
     std::vector<std::size_t> steps;
     for (std::size_t step = 0; step < settings.steps; ++step) {
-        if ((settings.pre_attention || settings.post_attention) &&
-            is_in_window(step, settings.steps, settings.window_begin, settings.window_end)) {
+        if (has_keyframes(settings, step)) {
             steps.push_back(step);
         }
     }
