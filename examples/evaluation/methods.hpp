@@ -90,6 +90,8 @@ std::vector<compared_method<Network>> compared_methods() {
     add_ours("Ours", "ablation", noise_kind::independent, as_it_is);
     add_ours("No AdaIN", "ablation", noise_kind::uv,
              [](settings_type& settings) { settings.normalization.enabled = false; });
+    add_ours("AdaIN of means alone", "ablation", noise_kind::uv,
+             [](settings_type& settings) { settings.normalization.statistics = adain_statistics::mean; });
 
     auto const add_variant = [&](std::string name, std::string noise, auto change) {
         add_ours(std::move(name), "correspondence", noise_kind::uv, change);

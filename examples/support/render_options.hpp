@@ -167,9 +167,12 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     bool no_pre = false;
     bool no_post = false;
     bool no_adain = false;
+    bool adain_means = false;
     ours->add_flag("--no-pre", no_pre, "no pre-attention injection (eq. 3 and 5)");
     ours->add_flag("--no-post", no_post, "no post-attention injection (eq. 6)");
-    ours->add_flag("--no-adain", no_adain, "no latent normalisation");
+    auto* const without = ours->add_flag("--no-adain", no_adain, "no latent normalisation");
+    ours->add_flag("--adain-means", adain_means, "latent normalisation of means alone, not of deviations")
+        ->excludes(without);
 
     options.correspondence.add_to(app);
     app.add_flag("--check", options.is_check,
@@ -220,6 +223,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     settings.pre_attention = !no_pre;
     settings.post_attention = !no_post;
     settings.normalization.enabled = !no_adain;
+    settings.normalization.statistics = adain_means ? adain_statistics::mean : adain_statistics::mean_and_deviation;
     settings.noise.seed = options.seed;
     settings.keyframes.seed = options.seed;
     if (options.method == render_method::per_frame) {

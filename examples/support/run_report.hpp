@@ -112,7 +112,9 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
         told["alpha"] = settings.alpha(0, {});
         told["pre_attention"] = settings.pre_attention;
         told["post_attention"] = settings.post_attention;
-        told["adain"] = settings.normalization.enabled;
+        told["adain"] = !settings.normalization.enabled                               ? "none"
+                        : settings.normalization.statistics == adain_statistics::mean ? "means"
+                                                                                      : "means and deviations";
     }
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

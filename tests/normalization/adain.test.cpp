@@ -121,6 +121,27 @@ TEST_SUITE("normalization/adain") {
         }
     }
 
+    TEST_CASE_TEMPLATE("means alone shift a frame and scale nothing", Real, float, double) {
+        auto [z, background] = world<Real>();
+        auto const before = z;
+        auto const first = background_of(z, background, 0);
+        adain_settings<Real> settings;
+        settings.statistics = adain_statistics::mean;
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings).empty());
+        for (std::size_t i = 0; i < frames; ++i) {
+            auto const own = background_of(z, background, i);
+            auto const was = background_of(before, background, i);
+            for (std::size_t c = 0; c < channels; ++c) {
+                CHECK(own.mean[c] == doctest::Approx(static_cast<double>(first.mean[c])).epsilon(1e-5));
+                CHECK(own.deviation[c] == doctest::Approx(static_cast<double>(was.deviation[c])).epsilon(1e-5));
+                auto const shift = static_cast<double>(first.mean[c] - was.mean[c]);
+                CHECK(z(i, c, std::size_t{2}, std::size_t{5}) ==
+                      doctest::Approx(static_cast<double>(before(i, c, std::size_t{2}, std::size_t{5})) + shift)
+                          .epsilon(1e-5));
+            }
+        }
+    }
+
     TEST_CASE_TEMPLATE("[GR sec. 3.4] the first frame stays as it is to the bit", Real, float, double) {
         auto [z, background] = world<Real>();
         auto const before = z;

@@ -36,10 +36,17 @@ enum class without_background : std::uint8_t {
     all_pixels ///< take the statistics of all of its pixels, and of all pixels of the first frame
 };
 
+/// Which statistics latent normalisation makes alike.
+enum class adain_statistics : std::uint8_t {
+    mean_and_deviation, ///< the paper's
+    mean                ///< means alone: nearly flat backgrounds have no deviation to divide by
+};
+
 /// How latents are normalised.
 template <class Real>
 struct adain_settings {
     bool enabled = true;
+    adain_statistics statistics = adain_statistics::mean_and_deviation;
     Real window_begin = 0;        ///< first and
     Real window_end = 1;          ///< last share of the steps in which it runs, [begin, end)
     std::size_t least_pixels = 2; ///< background pixels below which `fallback` decides; at least 2
@@ -48,8 +55,9 @@ struct adain_settings {
 };
 
 /// Normalises a sequence z [frames, channels, height, width] in place: each frame's statistics over its own
-/// `background` [frames, height, width] become those of frame 0 over its own. Returns the frames that were skipped for
-/// want of background (all of them if frame 0 has none). Throws shape_error if the mask does not fit.
+/// `background` [frames, height, width], means and deviations or means alone, become those of frame 0 over its own.
+/// Returns the frames that were skipped for want of background (all of them if frame 0 has none). Throws shape_error if
+/// the mask does not fit.
 template <class Real>
 std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view<std::uint8_t const, 3> background,
                                            adain_settings<std::type_identity_t<Real>> const& settings = {}) {
@@ -59,6 +67,13 @@ std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view
     strided_view<std::uint8_t const, 2> const all(everywhere.data(), {z.extent(2), z.extent(3)});
     auto const statistics = [&](std::size_t i, auto const& mask) {
         return masked_statistics(strided_view<Real const, 3>(z[i]), mask);
+    };
+
+    auto const rescale = [&](std::size_t i, channel_statistics<Real> from, channel_statistics<Real> const& to) {
+        if (settings.statistics == adain_statistics::mean) {
+            from.deviation = to.deviation;
+        }
+        adain(z[i], from, to);
     };
 
     std::vector<std::size_t> skipped;
@@ -71,11 +86,11 @@ std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view
         auto const own = statistics(i, background[i]);
         if (own.pixels >= least && first.pixels >= least) {
             if (i > 0) {
-                adain(z[i], own, first);
+                rescale(i, own, first);
             }
         } else if (settings.fallback == without_background::all_pixels) {
             if (i > 0) {
-                adain(z[i], statistics(i, all), statistics(0, all));
+                rescale(i, statistics(i, all), statistics(0, all));
             }
         } else {
             skipped.push_back(i);
