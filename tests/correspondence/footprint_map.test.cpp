@@ -281,7 +281,7 @@ TEST_SUITE("correspondence/footprint_map") {
                         }
                         auto const footprint = footprint_at(view, {1}, p);
                         auto const offset =
-                            offset_on(footprint.value_or(*point->footprint), view.uv_at({1}, p), point->place);
+                            offset_on(footprint.value_or(*point->footprint), view.point_at({1}, p), point->place);
                         auto const distance = std::max(std::abs(offset.right), std::abs(offset.down)) / 2;
                         closest = std::min(closest, distance);
                         if (found && row / 4 * 16 + column / 4 == found->value) {

@@ -88,7 +88,7 @@ stack<Real, 4> rendered(uv_maps_view const& maps, grid_extents grid, double blin
     for (std::uint32_t i = 0; i < maps.frame_count(); ++i) {
         for (std::uint32_t row = 0; row < maps.grid().height; ++row) {
             for (std::uint32_t column = 0; column < maps.grid().width; ++column) {
-                auto const uv = maps.uv_at({i}, {row, column});
+                auto const uv = maps.point_at({i}, {row, column});
                 auto const is_bright = i % 2 == 1 && maps.object_at({i}, {row, column}).value == 1;
                 auto const colour =
                     std::sin(12 * std::numbers::pi * double{uv[0]}) * std::sin(12 * std::numbers::pi * double{uv[1]}) +

@@ -29,7 +29,7 @@ TEST_SUITE("guidance/uv_maps") {
         maps.uv(1, 0, 2, 1) = 0.5f;
         CHECK(view.is_covered({1}, {0, 2}));
         CHECK(view.object_at({1}, {0, 2}) == object_index{7});
-        CHECK(view.uv_at({1}, {0, 2}) == std::array{0.25f, 0.5f});
+        CHECK(view.point_at({1}, {0, 2}) == std::array{0.25f, 0.5f});
         CHECK_FALSE(view.is_covered({0}, {0, 2}));
     }
 

@@ -29,7 +29,7 @@ TEST_SUITE("guidance/uv_maps_view") {
         coverage(0, 1, 0) = 255; // anything but 0 is covered
         object(0, 1, 0) = 4;
         uv_maps_view const view(uv, object.view(), coverage.view());
-        CHECK(view.uv_at({0}, {1, 0}) == std::array{2.0f, 12.0f});
+        CHECK(view.point_at({0}, {1, 0}) == std::array{2.0f, 12.0f});
         CHECK(view.is_covered({0}, {1, 0}));
         CHECK_FALSE(view.is_covered({0}, {0, 0}));
         CHECK(view.object_at({0}, {1, 0}) == object_index{4});

@@ -28,7 +28,7 @@ struct surface_sample {
 inline std::optional<surface_sample> representative_sample(uv_maps_view const& maps, frame_index frame,
                                                            grid_extents grid, token_index token) {
     auto const p = representative_pixel(maps, frame, grid, token);
-    return p ? std::optional(surface_sample{maps.object_at(frame, *p), maps.uv_at(frame, *p), *p}) : std::nullopt;
+    return p ? std::optional(surface_sample{maps.object_at(frame, *p), maps.point_at(frame, *p), *p}) : std::nullopt;
 }
 
 /// The texel of the object's T x T texture that holds (u, v): column floor(u T), row floor(v T); coordinates outside

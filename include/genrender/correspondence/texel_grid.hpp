@@ -142,7 +142,7 @@ private:
                 if (!maps.is_covered(frame, p)) {
                     continue;
                 }
-                surface_sample const sample{maps.object_at(frame, p), maps.uv_at(frame, p), p};
+                surface_sample const sample{maps.object_at(frame, p), maps.point_at(frame, p), p};
                 auto const own = texel_of(sample, resolution_);
                 auto const T = static_cast<std::int64_t>(resolution_.of(own.object));
                 token_index const token{

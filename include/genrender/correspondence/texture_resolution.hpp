@@ -70,8 +70,8 @@ private:
                          pixel a, pixel b) {
         if (b.row < maps.grid().height && b.column < maps.grid().width && maps.is_covered(frame, a) &&
             maps.is_covered(frame, b) && maps.object_at(frame, a) == maps.object_at(frame, b)) {
-            auto const uv_a = maps.uv_at(frame, a);
-            auto const uv_b = maps.uv_at(frame, b);
+            auto const uv_a = maps.point_at(frame, a);
+            auto const uv_b = maps.point_at(frame, b);
             auto const length = std::hypot(uv_a[0] - uv_b[0], uv_a[1] - uv_b[1]);
             // A median of numbers that do not compare is undefined; whoever reads such a UV refuses it.
             if (std::isfinite(length)) {

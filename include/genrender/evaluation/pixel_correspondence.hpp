@@ -142,7 +142,7 @@ private:
         auto const scaled = [](std::array<float, 2> const& step, std::size_t count) {
             return std::array{step[0] * static_cast<float>(count), step[1] * static_cast<float>(count)};
         };
-        seen_point const point{*object, maps.uv_at(i, at), scaled(*across, cell.width), scaled(*down, cell.height)};
+        seen_point const point{*object, maps.point_at(i, at), scaled(*across, cell.width), scaled(*down, cell.height)};
         auto const lengths = length(point.across) * length(point.down);
         // Less than a degree between the axes leaves no direction to measure along.
         auto const is_flat = !(std::abs(point.area()) > 0.02 * lengths);
@@ -171,7 +171,7 @@ private:
     }
 
     static std::array<float, 2> finite_uv(uv_maps_view const& maps, frame_index i, pixel at) {
-        auto const uv = maps.uv_at(i, at);
+        auto const uv = maps.point_at(i, at);
         for (auto const coordinate : uv) {
             require_value(std::isfinite(coordinate), "pixel_correspondence", "uv", coordinate,
                           "finite texture coordinates");

@@ -34,20 +34,23 @@ concept canonical_maps = requires(Maps const& maps, frame_index i, pixel p) {
     { maps.point_at(i, p) } -> std::same_as<std::array<float, Maps::dimensions>>;
 };
 
-/// A model of canonical_maps: where each surface point lies in its object's rest pose. Unlike UVs, no two points of an
-/// object share their rest position, so overlapping, mirrored and tiled UVs and the seams of charts do not matter.
-class position_maps_view {
+/// Maps of an animation in their owner's memory, of D coordinates: full resolution, no antialiasing, floating point. A
+/// model of canonical_maps.
+template <std::size_t D>
+    requires(D == 2 || D == 3)
+class canonical_maps_view {
 public:
-    static constexpr std::size_t dimensions = 3;
+    static constexpr std::size_t dimensions = D;
 
-    /// `position` [frames, height, width, 3] in the units of the rest pose, `object` and `coverage` [frames, height,
-    /// width]. Throws shape_error if the extents do not fit each other.
-    position_maps_view(strided_view<float const, 4> position, strided_view<std::uint32_t const, 3> object,
-                       strided_view<std::uint8_t const, 3> coverage)
-        : position_(position), object_(object), coverage_(coverage) {
+    /// `points` [frames, height, width, D], texture coordinates or positions in the units of the rest pose; `object` and
+    /// `coverage` [frames, height, width]. Throws shape_error if the extents do not fit each other.
+    canonical_maps_view(strided_view<float const, 4> points, strided_view<std::uint32_t const, 3> object,
+                        strided_view<std::uint8_t const, 3> coverage)
+        : points_(points), object_(object), coverage_(coverage) {
         auto const& e = coverage.extents();
-        require_shape("position_maps_view", "position", position, {e[0], e[1], e[2], 3});
-        require_shape("position_maps_view", "object", object, e);
+        auto const name = D == 2 ? "uv_maps_view" : "position_maps_view";
+        require_shape(name, D == 2 ? "uv" : "position", points, {e[0], e[1], e[2], D});
+        require_shape(name, "object", object, e);
     }
 
     std::size_t frame_count() const { return coverage_.extent(0); }
@@ -57,16 +60,23 @@ public:
     bool is_covered(frame_index i, pixel p) const { return coverage_(i.value, p.row, p.column) != 0; }
     /// The object a covered pixel shows.
     object_index object_at(frame_index i, pixel p) const { return {object_(i.value, p.row, p.column)}; }
-    /// (x, y, z) at rest of a covered pixel.
-    std::array<float, 3> point_at(frame_index i, pixel p) const {
-        return {position_(i.value, p.row, p.column, 0), position_(i.value, p.row, p.column, 1),
-                position_(i.value, p.row, p.column, 2)};
+    /// (u, v), or (x, y, z) at rest, of a covered pixel.
+    std::array<float, D> point_at(frame_index i, pixel p) const {
+        std::array<float, D> point;
+        for (std::size_t d = 0; d < D; ++d) {
+            point[d] = points_(i.value, p.row, p.column, d);
+        }
+        return point;
     }
 
 private:
-    strided_view<float const, 4> position_;
+    strided_view<float const, 4> points_;
     strided_view<std::uint32_t const, 3> object_;
     strided_view<std::uint8_t const, 3> coverage_;
 };
+
+/// Where each surface point lies in its object's rest pose. Unlike UVs, no two points of an object share their rest
+/// position, so overlapping, mirrored and tiled UVs and the seams of charts do not matter.
+using position_maps_view = canonical_maps_view<3>;
 
 } // namespace genrender

@@ -41,7 +41,7 @@ inline uv_report inspect(uv_maps_view const& maps) {
                     continue;
                 }
                 ++report.covered;
-                auto const uv = maps.uv_at({frame}, {row, column});
+                auto const uv = maps.point_at({frame}, {row, column});
                 auto const finite = std::isfinite(uv[0]) && std::isfinite(uv[1]);
                 auto const on_texture = uv[0] >= 0 && uv[0] <= 1 && uv[1] >= 0 && uv[1] <= 1;
                 report.not_finite += !finite;
