@@ -120,8 +120,7 @@ std::vector<compared_method<Network>> compared_methods() {
         by_texels(settings, 0);
         read_noise(settings, noise_reading::nearest_texel, 0);
     });
-    add_variant("Average by quality", "UV",
-                [](settings_type& settings) { settings.average = texel_average::by_quality; });
+    add_variant("Plain average", "UV", [](settings_type& settings) { settings.average = texel_average::plain; });
     return methods;
 }
 

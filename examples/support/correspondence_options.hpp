@@ -29,7 +29,7 @@ struct correspondence_options {
 
     std::string canonical = "uv";
     std::string correspondence = "footprint";
-    std::string average = "plain";
+    std::string average; ///< empty where not told: by quality, and plain with texels, whose quality is not known
     std::string noise = "surface";
     std::string background = "fixed";
     std::size_t feature_texels = 0;
@@ -50,7 +50,8 @@ struct correspondence_options {
         add("--correspondence", correspondence, correspondence_names,
             "footprint (of a feature cell on the surface), or texels: the paper's");
         add("--average", average, average_names,
-            "of keyframes: plain, or by quality (how many pixels see the surface, how pure the cell)");
+            "of keyframes: by quality (how many pixels see the surface, how pure the cell), or plain,\n"
+            "which is the paper's (quality; with texels plain)");
         add("--noise-reading", noise, noise_names,
             "surface (white in every frame), or one texel: nearest (the paper's), bilinear");
         add("--background", background, background_names,
@@ -73,11 +74,13 @@ struct correspondence_options {
     void apply_to(render_settings<Real>& settings) const {
         settings.correspondence.kind = chosen<correspondence_kind>(correspondence, correspondence_names);
         settings.correspondence.texels.T = feature_texels;
-        settings.average = chosen<texel_average>(average, average_names);
         settings.noise.reading = chosen<noise_reading>(noise, noise_names);
         settings.noise.T = noise_texels;
         settings.noise.background = chosen<background_noise>(background, background_names);
         auto const has_texels = settings.correspondence.kind == correspondence_kind::texel_grid;
+        settings.average = !average.empty() ? chosen<texel_average>(average, average_names)
+                           : has_texels     ? texel_average::plain
+                                            : texel_average::by_quality;
         auto const has_noise_texels = settings.noise.reading != noise_reading::surface;
         require(feature_texels == 0 || has_texels, "--texture-resolution", "is of --correspondence texels");
         require(noise_texels == 0 || has_noise_texels, "--noise-resolution",

@@ -108,7 +108,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     if (options.method == render_method::generative_rendering) {
         told["canonical"] = matched.canonical;
         told["correspondence"] = matched.correspondence;
-        told["average"] = matched.average;
+        told["average"] = settings.average == texel_average::plain ? "plain" : "quality";
         told["alpha"] = settings.alpha(0, {});
         told["pre_attention"] = settings.pre_attention;
         told["post_attention"] = settings.post_attention;

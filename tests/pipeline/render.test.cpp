@@ -123,7 +123,7 @@ TEST_SUITE("pipeline/render") {
                              s.correspondence.texels.T = 2;
                          })) > 1e-6);
         CHECK(difference(full, changed([](auto& s) { s.correspondence.footprint.reach = 0.1; })) > 1e-6);
-        CHECK(difference(full, changed([](auto& s) { s.average = texel_average::by_quality; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.average = texel_average::plain; })) > 1e-9);
         auto const by_nearest = [](auto& s) { s.noise.reading = noise_reading::nearest_texel; };
         CHECK(difference(full, changed(by_nearest)) > 1e-3);
         CHECK(difference(changed(by_nearest), changed([&](auto& s) {

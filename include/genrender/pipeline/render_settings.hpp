@@ -47,7 +47,8 @@ struct render_settings {
     bool post_attention = true;                   ///< eq. 6
     bool keeps_own_copy = true;                   ///< eq. 5 as written: a keyframe meets its own tokens twice
     Real first_fill_share = Real(0.5);            ///< of the inpainted texture in the unified one
-    texel_average average = texel_average::plain; ///< how the average texture weighs keyframes
+    /// How the average texture weighs keyframes; plain is the paper's.
+    texel_average average = texel_average::by_quality;
     Real window_begin = 0;                        ///< first and
     Real window_end = 1; ///< last share of the steps with keyframes and injection, [begin, end)
 
