@@ -11,7 +11,8 @@ sh cmake/quickstart.sh WHAT
   evaluate  the paper's tables on the built-in network: every method, baseline and ablation (build/evaluation);
             with --quick one prompt and one seed, with other options those of the program evaluate
   test      everything that continuous integration checks: g++, clang++ with sanitizers, headers, package
-  bench     the benchmarks, compiled for this machine's processor
+  bench     every benchmark beside its floor and its target, as one table (build/bench/benchmarks.md and .json); PyTorch
+            and NumPy too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them
   packages  install the Debian packages that demo, evaluate, test and bench need, and do no more
 
 Packages that are missing are installed with apt-get; nothing is downloaded when all are there.
@@ -22,9 +23,10 @@ TEXT
 demo_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
     libassimp-dev libbullet-dev libopenexr-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev"
 evaluate_packages="$demo_packages gnuplot-nox"
-bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev libbenchmark-dev"
+bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
+    libbenchmark-dev libcli11-dev nlohmann-json3-dev"
 # What its tests need besides.
-test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels"
+test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels valgrind"
 
 say() {
     printf '\n== %s\n' "$*"
@@ -59,7 +61,7 @@ install_packages() {
         stop "This script installs packages on Debian 12, Ubuntu 24.04 and newer. On this system, install by hand
   a C++20 compiler (g++ 12 or clang++ 14, or newer), CMake 3.25, Ninja, pkg-config,
   Eigen 3.4, xtensor 0.24, GLM 0.9.9; for the examples assimp 5, Bullet 3, OpenEXR 3, libpng, libwebp, CLI11 2,
-  nlohmann_json 3; for the tests doctest 2.4 and Google Benchmark 1.7
+  nlohmann_json 3; for the tests doctest 2.4, Google Benchmark 1.7 and valgrind
 and then run: cmake --workflow --preset demo (or test, or bench)"
     fi
     missing=$(missing_packages "$@")
@@ -127,10 +129,8 @@ bench() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $bench_packages
     workflow bench
-    for program in build/bench/benchmarks/genrender_*_bench; do
-        say "$program"
-        "$program"
-    done
+    say "The table and all figures"
+    ls build/bench/benchmarks.*
 }
 
 cd "$(dirname "$0")/.."

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // [GR alg. 1] The program that does it all: an animated scene in, a stylised animation out.
 #include "support/guidance_source.hpp"
+#include "support/plan_output.hpp"
 #include "support/preflight_output.hpp"
 #include "support/progress_line.hpp"
 #include "support/render_options.hpp"
 #include "support/render_output.hpp"
+#include "support/resident_memory.hpp"
 #include "support/run_report.hpp"
 
 #include <genrender/baselines/pix2video.hpp>
@@ -64,9 +66,12 @@ void run(render_options const& options, guidance_source const& source, reference
     network const phi(weights, weights.conditioning(to_view(nearness), options.prompt), loop);
 
     render_report report;
-    auto const z = with_canonical_maps(options, source, [&](auto const& maps) {
-        return with_method(options.method, [&](auto const& method) {
-            return render(method, phi, maps, options.settings, report, progress_line(options.is_quiet), loop);
+    latents<float> z;
+    auto const grown = resident_growth([&] {
+        z = with_canonical_maps(options, source, [&](auto const& maps) {
+            return with_method(options.method, [&](auto const& method) {
+                return render(method, phi, maps, options.settings, report, progress_line(options.is_quiet), loop);
+            });
         });
     });
 
@@ -77,12 +82,31 @@ void run(render_options const& options, guidance_source const& source, reference
     }
     write_pictures(options.out, source.guidance, frames);
     auto json = report_of(options, source, report, images);
+    json["render_resident_bytes"] = grown ? nlohmann::ordered_json(*grown) : nlohmann::ordered_json(nullptr);
     json["seconds"] = seconds_of(report, total.seconds());
     write_text(options.out / "report.json", json.dump(2) + "\n");
     if (earlier) {
         write_comparison(options.out, *earlier, frames,
                          method_name(render_method_names[static_cast<std::size_t>(options.method)]));
     }
+}
+
+/// The network for questions that any word will do for.
+network silent_network(guidance_source const& source, reference_weights<float>& weights, threaded_loop const& loop) {
+    auto const nearness = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
+    auto const word = weights.vocabulary ? weights.vocabulary->words().front() : std::string{};
+    return {weights, weights.conditioning(to_view(nearness), word), loop};
+}
+
+/// Tells what a run will take. The exit code.
+int plan(render_options const& options, guidance_source const& source, reference_weights<float>& weights,
+         threaded_loop const& loop) {
+    auto const phi = silent_network(source, weights, loop);
+    auto const timed = with_canonical_maps(
+        options, source, [&](auto const& maps) { return plan_run(phi, maps, options.settings, loop.threads()); });
+    write_plan(options.out, timed);
+    std::cout << plan_text(timed);
+    return 0;
 }
 
 /// The options that help with what a check finds.
@@ -107,10 +131,7 @@ std::string advice(recommendation const& one) {
 /// Tells what the maps are good for, at the feature resolutions of the network's injected layers. The exit code.
 int check(render_options const& options, guidance_source const& source, reference_weights<float>& weights,
           threaded_loop const& loop) {
-    // Any word will do: a check asks the network for its layers only.
-    auto const nearness = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
-    auto const word = weights.vocabulary ? weights.vocabulary->words().front() : std::string{};
-    network const phi(weights, weights.conditioning(to_view(nearness), word), loop);
+    auto const phi = silent_network(source, weights, loop); // asked for its layers only
     std::vector<grid_extents> grids;
     for (auto const& site : phi.sites()) {
         if (options.settings.layers(site, 0) && std::find(grids.begin(), grids.end(), site.grid) == grids.end()) {
@@ -144,7 +165,7 @@ int main(int argc, char** argv) {
         options = parse_render_options(argc, argv);
         loop = threaded_loop(options.threads);
         weights = load_weights(options);
-        if (weights->vocabulary && !options.is_check) {
+        if (weights->vocabulary && !options.is_check && !options.is_plan) {
             prompt_rows(options.prompt, weights->vocabulary->words());
         }
         make_folder(options.out);
@@ -160,6 +181,9 @@ int main(int argc, char** argv) {
         with_method(options.method, [&](auto const& method) { // which knows whether it draws keyframes
             return frames_to_denoise(options.settings, frame_count, method);
         });
+        if (options.is_plan) {
+            return plan(options, source, *weights, loop);
+        }
         if (!options.beside.empty()) {
             earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
         }

@@ -1,62 +1,93 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 1] Attention over a frame's own tokens and those of keyframes, beside Eigen's product of the same size.
+// [GR eq. 1] Attention over a frame's own tokens and those of keyframes, beside Eigen's product of as many FLOPs.
 #include <genrender/attention/scaled_dot_product.hpp>
+
+#include <genrender/core/random.hpp>
+#include <genrender/core/stack.hpp>
 
 #include <benchmark/benchmark.h>
 
+#include <benchmarks/support/paired_timing.hpp>
+
+#include <array>
+#include <cstdint>
 #include <vector>
 
 using namespace genrender;
+using namespace genrender::benchmarks;
 
 namespace {
 
-/// 2 products of multiply and add: Q K^T and P V.
-double flops(std::size_t tokens, std::size_t sources, std::size_t channels) {
-    return 4.0 * static_cast<double>(tokens) * static_cast<double>(sources) * static_cast<double>(channels);
+/// Numbers of variance 1, stored as T.
+template <class T, std::size_t Rank>
+stack<T, Rank> filled(std::array<std::size_t, Rank> const& extents) {
+    stack<T, Rank> values(extents);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        auto const x = uniform_value(Rank, random_stream::test, {static_cast<std::uint32_t>(i), 0, 0});
+        values.data()[i] = static_cast<T>(static_cast<float>(3.4641 * (x - 0.5)));
+    }
+    return values;
 }
 
-void attention(benchmark::State& state) {
-    auto const tokens = static_cast<std::size_t>(state.range(0));
-    auto const heads = static_cast<std::size_t>(state.range(1));
-    auto const channels = heads * static_cast<std::size_t>(state.range(2));
-    auto const blocks = static_cast<std::size_t>(state.range(3)) + 1;
-    stack<float, 2> F({tokens, channels});
-    stack<float, 2> const Q({tokens, channels});
-    stack<float, 3> const K({blocks, tokens, channels});
-    stack<float, 3> const V({blocks, tokens, channels});
-    std::vector<key_value_view<float>> sources;
-    for (std::size_t b = 0; b < blocks; ++b) {
-        sources.push_back({K.view()[b], V.view()[b]});
+/// Tokens of each frame over its own and those of all keyframes, which are stored as T. The floor is a matrix product
+/// of 1024^3, as large as Eigen likes them; attention is 4 FLOPs a query, key and channel, and its exponentials are for
+/// nothing. Small grids take several frames, so that both sides of the ratio take milliseconds.
+template <class T>
+void attend(benchmark::State& state) {
+    auto const frames = static_cast<std::size_t>(state.range(0));
+    auto const tokens = static_cast<std::size_t>(state.range(1));
+    auto const heads = static_cast<std::size_t>(state.range(2));
+    auto const channels = heads * static_cast<std::size_t>(state.range(3));
+    auto const keyframes = static_cast<std::size_t>(state.range(4));
+    stack<float, 3> F({frames, tokens, channels});
+    auto const Q = filled<float, 3>({frames, tokens, channels});
+    auto const K = filled<float, 3>({frames, tokens, channels});
+    auto const V = filled<float, 3>({frames, tokens, channels});
+    auto const K_KF = filled<T, 3>({keyframes, tokens, channels});
+    auto const V_KF = filled<T, 3>({keyframes, tokens, channels});
+    std::vector<key_value_view<float>> blocks(keyframes + 1);
+    for (std::size_t k = 0; k < keyframes; ++k) {
+        blocks[k + 1] = {K_KF.view()[k], V_KF.view()[k]};
     }
-    for (auto _ : state) {
-        scaled_dot_product(F.view(), Q, sources, heads);
-        benchmark::DoNotOptimize(F.data());
-        benchmark::ClobberMemory();
-    }
-    state.counters["FLOP/s"] =
-        benchmark::Counter(flops(tokens, blocks * tokens, channels), benchmark::Counter::kIsIterationInvariantRate);
+    constexpr Eigen::Index n = 1024;
+    static matrix<float> const A = matrix<float>::Random(n, n);
+    static matrix<float> const B = matrix<float>::Random(n, n);
+    static matrix<float> C(n, n);
+
+    auto const flops = 4.0 * static_cast<double>(frames * tokens) * static_cast<double>((keyframes + 1) * tokens) *
+                       static_cast<double>(channels);
+    auto const attend_all = [&] {
+        for (std::size_t i = 0; i < frames; ++i) {
+            blocks[0] = {K.view()[i], V.view()[i]};
+            scaled_dot_product(F.view()[i], Q.view()[i], blocks, heads);
+        }
+    };
+    time_against(state, {"Eigen's matrix product", 2.0 * n * n * n / flops}, attend_all, [&] { C.noalias() = A * B; });
+    state.counters["FLOP/s"] = benchmark::Counter(flops, benchmark::Counter::kIsIterationInvariantRate);
 }
+
+void attention(benchmark::State& state) { attend<float>(state); }
+void attention_float16(benchmark::State& state) { attend<float16>(state); }
+void attention_bfloat16(benchmark::State& state) { attend<bfloat16>(state); }
+
+// The grids of Stable Diffusion 1.5 at 512 x 512; one head of the largest, for time.
 BENCHMARK(attention)
-    ->ArgNames({"tokens", "heads", "head_size", "keyframes"})
-    ->Args({1024, 8, 80, 0})
-    ->Args({1024, 8, 80, 5})
-    ->Args({256, 8, 160, 5})
-    ->Unit(benchmark::kMillisecond);
-
-void matrix_product(benchmark::State& state) {
-    auto const n = static_cast<Eigen::Index>(state.range(0));
-    auto const k = static_cast<Eigen::Index>(state.range(1));
-    matrix<float> const A = matrix<float>::Random(n, k);
-    matrix<float> const B = matrix<float>::Random(n, k);
-    matrix<float> C(n, n);
-    for (auto _ : state) {
-        C.noalias() = A * B.transpose();
-        benchmark::DoNotOptimize(C.data());
-        benchmark::ClobberMemory();
-    }
-    state.counters["FLOP/s"] =
-        benchmark::Counter(2.0 * static_cast<double>(n * n * k), benchmark::Counter::kIsIterationInvariantRate);
-}
-BENCHMARK(matrix_product)->ArgNames({"tokens", "head_size"})->Args({1024, 80})->Args({256, 160});
+    ->ArgNames({"frames", "tokens", "heads", "head_size", "keyframes"})
+    ->ArgsProduct({{1}, {4096}, {1}, {40}, {0, 5, 8}})
+    ->ArgsProduct({{1}, {1024}, {8}, {80}, {0, 5, 8}})
+    ->ArgsProduct({{4}, {256}, {8}, {160}, {0, 5, 8}})
+    ->ArgsProduct({{16}, {64}, {8}, {160}, {0, 5, 8}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
+BENCHMARK(attention_float16)
+    ->ArgNames({"frames", "tokens", "heads", "head_size", "keyframes"})
+    ->Args({1, 1024, 8, 80, 5})
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
+BENCHMARK(attention_bfloat16)
+    ->ArgNames({"frames", "tokens", "heads", "head_size", "keyframes"})
+    ->Args({1, 1024, 8, 80, 5})
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
 
 } // namespace

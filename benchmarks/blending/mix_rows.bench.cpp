@@ -2,71 +2,195 @@
 // [GR eq. 6] The kernel of blending at the shapes of Stable Diffusion's decoder, beside a copy of the same bytes.
 #include <genrender/blending/mix_rows.hpp>
 
+#include <genrender/blending/blend_plan.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/core/stack.hpp>
+#include <genrender/correspondence/footprint_map.hpp>
 
 #include <benchmark/benchmark.h>
 
+#include <benchmarks/support/paired_timing.hpp>
+#include <benchmarks/support/turning_world.hpp>
+
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <map>
 #include <vector>
 
 using namespace genrender;
+using namespace genrender::benchmarks;
 
 namespace {
 
-constexpr std::size_t keyframes = 5;
+constexpr std::size_t frames = 16;
+std::vector<frame_index> const KF{{9}, {1}, {14}, {5}, {12}};
 
-/// Every token mixes three of the keyframes' tokens.
-struct rows_of_three {
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<std::uint32_t> sources;
-    std::vector<float> weights;
-
-    explicit rows_of_three(std::size_t tokens) {
-        for (std::uint32_t t = 0; t < tokens; ++t) {
-            for (std::uint32_t e = 0; e < 3; ++e) {
-                auto const k = (t / 97 + e) % keyframes;
-                auto const near = (t + uniform_below(5, 1, random_stream::test, {t, e, 0})) % tokens;
-                sources.push_back(static_cast<std::uint32_t>(k * tokens + near));
-                weights.push_back(1.0f / 3);
-            }
-            offsets.push_back(static_cast<std::uint32_t>(sources.size()));
+/// The plans of all frames of the turning world at tokens of a square grid.
+std::vector<blend_plan<float>> const& plans_of(std::size_t tokens) {
+    static turning_world const world(frames);
+    static std::map<std::size_t, std::vector<blend_plan<float>>> known;
+    auto& plans = known[tokens];
+    if (plans.empty()) {
+        auto const side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(tokens))));
+        footprint_map const map(world.uv(), {side, side});
+        for (std::uint32_t i = 0; i < frames; ++i) {
+            plans.push_back(make_blend_plan<float>(map, KF, {i}));
         }
     }
-};
-
-void shapes(benchmark::internal::Benchmark* bench) {
-    bench->ArgNames({"tokens", "channels"})->Args({4096, 320})->Args({1024, 640})->Args({256, 1280})->Args({64, 1280});
+    return plans;
 }
 
-void mix(benchmark::State& state) {
+/// Every token mixes a random token of each keyframe.
+blend_plan<float> const& worst_plan(std::size_t tokens) {
+    static std::map<std::size_t, blend_plan<float>> known;
+    auto& plan = known[tokens];
+    if (plan.sources.empty()) {
+        for (std::uint32_t t = 0; t < tokens; ++t) {
+            for (std::uint32_t k = 0; k < KF.size(); ++k) {
+                auto const bound = static_cast<std::uint32_t>(tokens);
+                plan.sources.push_back(k * bound + uniform_below(bound, 1, random_stream::test, {t, k, 0}));
+                plan.weights.push_back(0.2f);
+            }
+            plan.offsets.push_back(static_cast<std::uint32_t>(plan.sources.size()));
+        }
+    }
+    return plan;
+}
+
+template <class T>
+stack<T, 3> filled(std::array<std::size_t, 3> const& extents) {
+    stack<T, 3> values(extents);
+    std::fill_n(values.data(), values.size(), static_cast<T>(0.25f));
+    return values;
+}
+
+/// Bytes of applying a plan: every source is read, every covered row read and written.
+template <class Stored>
+std::size_t bytes_of(blend_plan<float> const& plan, std::size_t channels) {
+    return channels * (plan.sources.size() * sizeof(Stored) + 2 * plan.covered_count() * sizeof(float));
+}
+
+/// Applies plans to frames one after the other, each time beside a copy of as many bytes. `Fs` [frames, tokens,
+/// channels] is what the frames are.
+template <class Stored>
+void mix_frames(benchmark::State& state, std::vector<blend_plan<float> const*> const& plans, std::size_t count) {
     auto const tokens = static_cast<std::size_t>(state.range(0));
     auto const channels = static_cast<std::size_t>(state.range(1));
-    stack<float, 2> F({tokens, channels});
-    stack<float, 3> const F_KF({keyframes, tokens, channels});
-    rows_of_three const plan(tokens);
-    for (auto _ : state) {
-        mix_rows(F.view(), F_KF, {plan.offsets, plan.sources, plan.weights}, 0.7f);
-        benchmark::DoNotOptimize(F.data());
-        benchmark::ClobberMemory();
+    auto F = filled<float>({count, tokens, channels});
+    auto const F_KF = filled<Stored>({KF.size(), tokens, channels});
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        bytes += bytes_of<Stored>(*plans[i % plans.size()], channels);
     }
-    // Three rows read, F read and written.
-    state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(5 * F.size() * sizeof(float)));
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(tokens));
+    std::vector<char> from(bytes / 2, 1);
+    std::vector<char> to(bytes / 2, 2);
+    time_against(
+        state, {"copy of the same bytes"},
+        [&] {
+            for (std::size_t i = 0; i < count; ++i) {
+                mix_rows(F.view()[i], in_view<Stored, 3>(F_KF.view()), plans[i % plans.size()]->rows(), 0.7f);
+            }
+        },
+        [&] { std::memcpy(to.data(), from.data(), from.size()); });
+    state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count * tokens));
+    state.counters["sources_a_row"] = static_cast<double>(plans[0]->sources.size()) /
+                                      static_cast<double>(std::max<std::size_t>(1, plans[0]->covered_count()));
 }
-BENCHMARK(mix)->Apply(shapes);
 
-void copy_of_the_same_bytes(benchmark::State& state) {
-    auto const size = 5 * static_cast<std::size_t>(state.range(0) * state.range(1)) / 2;
-    std::vector<float> from(size, 1);
-    std::vector<float> to(size);
-    for (auto _ : state) {
-        std::memcpy(to.data(), from.data(), size * sizeof(float));
-        benchmark::DoNotOptimize(to.data());
-        benchmark::ClobberMemory();
+std::vector<blend_plan<float> const*> pointers_to(std::vector<blend_plan<float>> const& plans) {
+    std::vector<blend_plan<float> const*> pointers;
+    for (auto const& plan : plans) {
+        pointers.push_back(&plan);
     }
-    state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(2 * size * sizeof(float)));
+    return pointers;
 }
-BENCHMARK(copy_of_the_same_bytes)->Apply(shapes);
+
+void shapes(benchmark::internal::Benchmark* bench) {
+    bench->ArgNames({"tokens", "channels"})
+        ->Args({4096, 320})
+        ->Args({1024, 640})
+        ->Args({256, 1280})
+        ->Args({64, 1280})
+        ->UseManualTime()
+        ->Unit(benchmark::kMicrosecond);
+}
+
+template <class Stored>
+void mix(benchmark::State& state) {
+    mix_frames<Stored>(state, {&plans_of(static_cast<std::size_t>(state.range(0)))[7]}, 1);
+}
+BENCHMARK(mix<float>)->Apply(shapes);
+BENCHMARK(mix<float16>)->Apply(shapes);
+BENCHMARK(mix<bfloat16>)->Apply(shapes);
+
+void mix_five_random_sources(benchmark::State& state) {
+    mix_frames<float>(state, {&worst_plan(static_cast<std::size_t>(state.range(0)))}, 1);
+}
+BENCHMARK(mix_five_random_sources)->Apply(shapes);
+
+/// More than the caches hold.
+void mix_many_frames(benchmark::State& state) {
+    mix_frames<float>(state, pointers_to(plans_of(static_cast<std::size_t>(state.range(0)))),
+                      static_cast<std::size_t>(state.range(2)));
+}
+BENCHMARK(mix_many_frames)
+    ->ArgNames({"tokens", "channels", "frames"})
+    ->Args({4096, 320, 128})
+    ->Args({1024, 640, 256})
+    ->Args({256, 1280, 512})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// The same by way of a texture in memory, once for one frame: each keyframe is written to the texels of its tokens'
+/// squares, their mean and first fill are taken, and the frame reads the texel of each of its tokens.
+void dense_texture(benchmark::State& state) {
+    auto const tokens = static_cast<std::size_t>(state.range(0));
+    auto const channels = static_cast<std::size_t>(state.range(1));
+    auto const T = static_cast<std::size_t>(state.range(2));
+    auto const side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(tokens))));
+    auto const F_KF = filled<float>({KF.size(), tokens, channels});
+    auto F = filled<float>({1, tokens, channels});
+    std::vector<float> sum(T * T * channels);
+    std::vector<float> first(T * T * channels);
+    std::vector<std::uint8_t> seen(T * T);
+    for (auto _ : state) {
+        std::fill(sum.begin(), sum.end(), 0.0f);
+        std::fill(seen.begin(), seen.end(), std::uint8_t{0});
+        for (std::size_t k = 0; k < KF.size(); ++k) {
+            for (std::size_t texel = 0; texel < T * T; ++texel) {
+                auto const token = texel / T * side / T * side + texel % T * side / T;
+                auto const* const in = F_KF.data() + (k * tokens + token) * channels;
+                for (std::size_t c = 0; c < channels; ++c) {
+                    sum[texel * channels + c] += in[c];
+                }
+                if (seen[texel]++ == 0) {
+                    std::copy_n(in, channels, &first[texel * channels]);
+                }
+            }
+        }
+        for (std::size_t texel = 0; texel < T * T; ++texel) {
+            for (std::size_t c = 0; c < channels; ++c) {
+                auto& value = sum[texel * channels + c];
+                value = 0.5f * (first[texel * channels + c] + value / static_cast<float>(seen[texel]));
+            }
+        }
+        for (std::size_t t = 0; t < tokens; ++t) {
+            auto const texel = (t / side * T + T / 2) / side * T + (t % side * T + T / 2) / side;
+            for (std::size_t c = 0; c < channels; ++c) {
+                auto& value = F.data()[t * channels + c];
+                value = 0.3f * value + 0.7f * sum[texel * channels + c];
+            }
+        }
+        benchmark::DoNotOptimize(F.data());
+    }
+}
+BENCHMARK(dense_texture)
+    ->ArgNames({"tokens", "channels", "texels"})
+    ->Args({4096, 320, 1024})
+    ->Args({1024, 640, 1024})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 } // namespace

@@ -49,6 +49,7 @@ struct render_options {
     render_method method = render_method::generative_rendering;
     bool is_quiet = false;
     bool is_check = false; ///< tells what the maps are good for and renders nothing
+    bool is_plan = false;  ///< tells what the run will take and renders nothing
     correspondence_options correspondence;
     render_settings<float> settings;
 };
@@ -101,9 +102,10 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(not_empty)
         ->type_name("DIR");
     input->require_option(1);
-    auto const* const prompt_option = app.add_option(
-        "--prompt", options.prompt,
-        "what it shall look like, in the words: " + detail::listed(prompt_words, " ") + " (not needed with --check)");
+    auto const* const prompt_option =
+        app.add_option("--prompt", options.prompt,
+                       "what it shall look like, in the words: " + detail::listed(prompt_words, " ") +
+                           " (not needed with --check\nor --plan)");
     app.add_option("--out", options.out, "folder for frames, maps, animation, contact sheet and report")
         ->required()
         ->check(not_empty)
@@ -174,9 +176,19 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     ours->add_flag("--adain-means", adain_means, "latent normalisation of means alone, not of deviations")
         ->excludes(without);
 
+    std::string storage = "same";
+    ours->add_option("--feature-storage", storage,
+                     "of the keyframes' features: same (as computed), float16 or bfloat16, in half the memory")
+        ->capture_default_str()
+        ->check(one_of(names_type{"same", "float16", "bfloat16"}))
+        ->type_name("FORMAT");
+
     options.correspondence.add_to(app);
     app.add_flag("--check", options.is_check,
                  "look before you run: what the maps are good for, as preflight.txt, .json and .png in OUT");
+    app.add_flag("--plan", options.is_plan,
+                 "say before you run: memory and work of the run, as a table, plan.txt and plan.json in OUT")
+        ->excludes("--check");
     app.add_option("--weights", options.weights,
                    "the denoiser, a folder in diffusers' layout (the trained reference denoiser), or the word\n"
                    "random: the same network without training")
@@ -202,7 +214,11 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         if (options.method != render_method::generative_rendering && foreign > 0) {
             throw CLI::ValidationError("--method", method + " has no keyframes, injection or normalisation to set");
         }
-        if (prompt_option->count() == 0 && !options.is_check) {
+        if (options.is_plan &&
+            (options.method == render_method::pix2video || options.method == render_method::tokenflow)) {
+            throw CLI::ValidationError("--plan", "is of generative_rendering and per_frame");
+        }
+        if (prompt_option->count() == 0 && !options.is_check && !options.is_plan) {
             throw CLI::RequiredError("--prompt");
         }
         options.correspondence.apply_to(settings);
@@ -224,6 +240,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     settings.post_attention = !no_post;
     settings.normalization.enabled = !no_adain;
     settings.normalization.statistics = adain_means ? adain_statistics::mean : adain_statistics::mean_and_deviation;
+    settings.feature_storage = storage == "float16"    ? feature_storage::f16
+                               : storage == "bfloat16" ? feature_storage::bf16
+                                                       : feature_storage::same;
     settings.noise.seed = options.seed;
     settings.keyframes.seed = options.seed;
     if (options.method == render_method::per_frame) {

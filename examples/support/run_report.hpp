@@ -110,6 +110,8 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
         told["correspondence"] = matched.correspondence;
         told["average"] = settings.average == texel_average::plain ? "plain" : "quality";
         told["alpha"] = settings.alpha(0, {});
+        constexpr std::array<char const*, 3> storages{"same", "float16", "bfloat16"};
+        told["feature_storage"] = storages[static_cast<std::size_t>(settings.feature_storage)];
         told["pre_attention"] = settings.pre_attention;
         told["post_attention"] = settings.post_attention;
         told["adain"] = !settings.normalization.enabled                               ? "none"

@@ -3,11 +3,13 @@
 // (adapters).
 #pragma once
 
+#include <genrender/core/elementwise.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/random.hpp>
+#include <genrender/core/register_vector.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -36,8 +38,12 @@
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
 #include <genrender/correspondence/footprint_map.hpp>
+#include <genrender/correspondence/kept_samples.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/reproject.hpp>
+#include <genrender/correspondence/sample_bins.hpp>
+#include <genrender/correspondence/sample_grid.hpp>
+#include <genrender/correspondence/sample_pack.hpp>
 #include <genrender/correspondence/sample_tree.hpp>
 #include <genrender/correspondence/surface_correspondence.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
@@ -45,6 +51,7 @@
 #include <genrender/correspondence/texel_grid.hpp>
 #include <genrender/correspondence/texture_projection.hpp>
 #include <genrender/correspondence/texture_resolution.hpp>
+#include <genrender/correspondence/token_matches.hpp>
 #include <genrender/correspondence/visible_texels.hpp>
 
 #include <genrender/noise/background_noise.hpp>
@@ -52,15 +59,22 @@
 #include <genrender/noise/initial_noise.hpp>
 #include <genrender/noise/noise_tree.hpp>
 #include <genrender/noise/noise_texture.hpp>
+#include <genrender/noise/normal_lanes.hpp>
 #include <genrender/noise/surface_noise.hpp>
 
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/attention/attention_processor.hpp>
+#include <genrender/attention/attention_scratch.hpp>
 #include <genrender/attention/attention_site.hpp>
+#include <genrender/attention/attention_tile.hpp>
+#include <genrender/attention/exponential.hpp>
 #include <genrender/attention/extended_attention.hpp>
+#include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/host_features.hpp>
+#include <genrender/attention/key_value_view.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
+#include <genrender/attention/vector_lanes.hpp>
 
 #include <genrender/sampling/classifier_free_guidance.hpp>
 #include <genrender/sampling/denoiser.hpp>
@@ -76,8 +90,10 @@
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
 #include <genrender/keyframes/recorder.hpp>
+#include <genrender/keyframes/stoppable_denoiser.hpp>
 
 #include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/channel_lanes.hpp>
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
@@ -91,10 +107,12 @@
 #include <genrender/normalization/channel_statistics.hpp>
 
 #include <genrender/pipeline/generative_rendering.hpp>
+#include <genrender/pipeline/memory_plan.hpp>
 #include <genrender/pipeline/progress.hpp>
 #include <genrender/pipeline/render.hpp>
 #include <genrender/pipeline/render_report.hpp>
 #include <genrender/pipeline/render_settings.hpp>
+#include <genrender/pipeline/run_description.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/pipeline/sequence_evaluation.hpp>
 #include <genrender/pipeline/sequence_method.hpp>

@@ -98,4 +98,15 @@ TEST_SUITE("attention/attention_processor") {
                                               {});
         testing::check_attention_processor_laws<Real>(inject, frames, 5, 4, sites);
     }
+
+    TEST_CASE("a processor may say where it is plain and nothing is known of one that does not") {
+        struct plain_at_one {
+            bool is_plain_at(attention_place place) const { return place.site.value == 1; }
+        };
+        struct silent {};
+        CHECK(is_plain_at(plain_at_one{}, {{1}, 0}));
+        CHECK_FALSE(is_plain_at(plain_at_one{}, {{2}, 0}));
+        CHECK_FALSE(is_plain_at(silent{}, {{1}, 0}));
+        CHECK(is_plain_at(plain_attention{}, {{2}, 1}));
+    }
 }

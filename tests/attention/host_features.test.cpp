@@ -5,9 +5,11 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 using namespace genrender;
@@ -66,5 +68,39 @@ TEST_SUITE("attention/host_features") {
         CHECK_FALSE(std::is_convertible_v<strided_view<float, 3>, host_features<float>>);
         CHECK_FALSE(std::is_constructible_v<strided_view<double const, 3>, host_features<float>&>);
         CHECK(host_features<float>().view().size() == 0);
+    }
+
+    TEST_CASE_TEMPLATE("features are kept in 16 bits to half a unit in the last place", Real, float, double) {
+        auto const f = host_features<Real>::allocate({2, 5, 3});
+        for (std::size_t e = 0; e < 30; ++e) {
+            f.view().data()[e] =
+                std::ldexp(Real(1) + Real(e) / 31, static_cast<int>(e % 9) - 4) * (e % 2 == 0 ? 1 : -1);
+        }
+        for (auto const& [storage, unit] :
+             {std::pair(feature_storage::f16, 0x1p-11), {feature_storage::bf16, 0x1p-8}}) {
+            auto const kept = host_features<Real>::rounded(f.view(), storage);
+            CHECK(kept.storage() == storage);
+            CHECK(kept.extents() == f.extents());
+            CHECK_FALSE(kept.is_borrowed());
+            std::size_t exact = 0;
+            kept.visit([&, u = unit](auto const& view) {
+                for (std::size_t e = 0; e < 30; ++e) {
+                    auto const was = static_cast<double>(f.view().data()[e]);
+                    auto const is = static_cast<double>(view.data()[e]);
+                    CHECK(std::abs(is - was) <= u * std::abs(was));
+                    exact += is == was ? 1U : 0U;
+                }
+            });
+            CHECK(exact < 10); // they were rounded
+        }
+    }
+
+    TEST_CASE("a copy in the same format is new memory with the same values") {
+        auto const f = host_features<float>::allocate({1, 2, 2});
+        f.view()(0, 1, 0) = 3;
+        auto const kept = host_features<float>::rounded(f.view(), feature_storage::same);
+        CHECK(kept.storage() == feature_storage::same);
+        CHECK(kept.view().data() != f.view().data());
+        CHECK(kept.view()(0, 1, 0) == 3);
     }
 }

@@ -76,6 +76,6 @@ double frame_difference(latents<Real> const& a, strided_view<Real const, 4> b, s
 
 /// Bound of rounding in three layers that amplify it.
 template <class Real>
-constexpr double layered_tolerance = sizeof(Real) == 4 ? 1e-4 : 1e-13;
+constexpr double layered_tolerance = sizeof(Real) == 4 ? 1e-4 : 3e-13;
 
 } // namespace genrender::testing

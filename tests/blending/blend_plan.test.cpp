@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <type_traits>
 #include <vector>
@@ -46,6 +47,22 @@ struct graded_strip : testing::shifted_strip {
 
 static_assert(graded_correspondence_map<graded_strip>);
 static_assert(!graded_correspondence_map<testing::shifted_strip>);
+
+/// A footprint_map that is asked for one token after the other.
+struct one_by_one {
+    using point_type = footprint_map<2>::point_type;
+    footprint_map<2> const* map;
+
+    std::size_t frame_count() const { return map->frame_count(); }
+    grid_extents grid() const { return map->grid(); }
+    std::optional<point_type> point_at(frame_index i, token_index t) const { return map->point_at(i, t); }
+    std::optional<token_index> token_at(frame_index i, point_type const& point) const {
+        return map->token_at(i, point);
+    }
+};
+
+static_assert(matched_correspondence_map<footprint_map<2>>);
+static_assert(!matched_correspondence_map<one_by_one>);
 
 /// The weights of each token's sources, in the drawn order.
 std::vector<std::vector<double>> weights_of(blend_plan<double> const& plan) {
@@ -257,6 +274,31 @@ TEST_SUITE("blending/blend_plan") {
             }
             CHECK(sum == doctest::Approx(weights.empty() ? 0.0 : 1.0));
         }
+    }
+    TEST_CASE_TEMPLATE("matches of whole frames give the plan that single questions give", Real, float, double) {
+        std::size_t entries = 0;
+        for (std::uint64_t seed = 0; seed < 6; ++seed) {
+            auto const maps = testing::random_scene(seed, 6, {48, 64}, 1 + seed % 4);
+            footprint_map const map(to_uv_view(maps), {12, 16});
+            one_by_one const single{&map};
+            auto const KF = draw_shuffled(seed);
+            auto const share = seed % 2 == 0 ? Real(0.5) : Real(0.2);
+            for (std::uint32_t i = 0; i < 6; ++i) {
+                auto const expected = make_blend_plan<Real>(single, KF, {i}, share);
+                // The second time from what the first left.
+                for (int time = 0; time < 2; ++time) {
+                    auto const plan = make_blend_plan<Real>(map, KF, {i}, share);
+                    CHECK(plan.offsets == expected.offsets);
+                    CHECK(plan.sources == expected.sources);
+                    REQUIRE(plan.weights.size() == expected.weights.size());
+                    for (std::size_t e = 0; e < plan.weights.size(); ++e) {
+                        CHECK(plan.weights[e] == doctest::Approx(expected.weights[e]).epsilon(1e-6));
+                    }
+                }
+                entries += expected.sources.size();
+            }
+        }
+        CHECK(entries > 3000);
     }
     TEST_CASE("arguments that do not fit are refused by name") {
         testing::shifted_strip const strip{2, 3};

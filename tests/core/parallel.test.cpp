@@ -157,6 +157,35 @@ TEST_SUITE("core/parallel") {
         CHECK(std::vector<int>(counts.begin(), counts.end()) == std::vector<int>(30, 1));
     }
 
+    TEST_CASE("one object serves loop after loop and loops of several threads at once") {
+        threaded_loop const loop(3);
+        auto const copy = loop;
+        for (int round = 0; round < 200; ++round) {
+            REQUIRE(visits(round % 2 == 0 ? loop : copy, 5) == std::vector<int>(5, 1));
+        }
+        std::vector<std::atomic<int>> counts(4 * 100);
+        threaded_loop(4)(4, [&](std::size_t caller) {
+            for (int round = 0; round < 50; ++round) {
+                loop(100, [&](std::size_t i) { counts.at(caller * 100 + i).fetch_add(1); });
+            }
+        });
+        CHECK(std::vector<int>(counts.begin(), counts.end()) == std::vector<int>(400, 50));
+    }
+
+    TEST_CASE("loops share the same few threads and work goes on after an exception") {
+        threaded_loop const loop(2);
+        std::mutex mutex;
+        std::set<std::thread::id> ids;
+        for (int round = 0; round < 50; ++round) {
+            CHECK_THROWS_AS(loop(3, [](std::size_t) { throw std::runtime_error("no"); }), std::runtime_error);
+            loop(8, [&](std::size_t) {
+                std::lock_guard const lock(mutex);
+                ids.insert(std::this_thread::get_id());
+            });
+        }
+        CHECK(ids.size() <= 2);
+    }
+
     TEST_CASE("0 threads mean as many as the machine has") {
         CHECK(threaded_loop().threads() >= 1);
         CHECK(threaded_loop(0).threads() == threaded_loop().threads());

@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -107,6 +108,24 @@ TEST_SUITE("correspondence/surface_correspondence") {
             CHECK(missing > 5);
             CHECK((shared > 0) == (reading == texel_reading::average));
         }
+    }
+
+    TEST_CASE("[GR sec. 3.2] matches of whole frames are told by footprints and not by texels") {
+        auto const maps = testing::random_scene(8, 4, {48, 48}, 3);
+        surface_correspondence<2> const map(to_uv_view(maps), {12, 12}, {});
+        auto const matches = map.matches({0}, {2});
+        REQUIRE(matches != nullptr);
+        std::size_t shown = 0;
+        for (std::uint32_t t = 0; t < 144; ++t) {
+            auto const point = map.point_at({0}, {t});
+            auto const token = point ? map.token_at({2}, *point) : std::nullopt;
+            REQUIRE((matches->is_shown[t] != 0) == token.has_value());
+            CHECK(matches->tokens[t] == (token ? token->value : 0));
+            shown += token ? 1U : 0U;
+        }
+        CHECK(shown > 30);
+        surface_correspondence<2> const texels(to_uv_view(maps), {12, 12}, {.kind = correspondence_kind::texel_grid});
+        CHECK(texels.matches({0}, {2}) == nullptr);
     }
 
     TEST_CASE("[GR sec. 3.2] both kinds keep the laws") {

@@ -2,6 +2,11 @@
 // The first of two translation units that include the whole library.
 #include <genrender/genrender.hpp>
 
+// kernels_on_views.cpp knows these packages by their macros, which have to be theirs.
+#if !defined(XTENSOR_VERSION_MAJOR) || !defined(GLM_VERSION_MAJOR)
+#error "the whole library includes xtensor and GLM, and one of them does not say so any more"
+#endif
+
 bool second_throws_what_first_catches();
 
 int main() { return second_throws_what_first_catches() ? 0 : 1; }

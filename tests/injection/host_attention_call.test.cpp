@@ -156,4 +156,38 @@ TEST_SUITE("injection/host_attention_call") {
         CHECK_THROWS_WITH_AS(call.attend(f, {{{&f, &f, 0}}, {}, {{&f, &f, 0}}}),
                              "scaled_dot_product: blocks is empty, expected at least one key", value_error);
     }
+
+    TEST_CASE("keys and values kept in 16 bits are attended to beside those that are not") {
+        matrix_module<double> const module(channels, 2, 1);
+        auto const f = random_features<double>({3, tokens, channels}, 2);
+        call_of<double> const call({}, frames, f, module);
+        auto const Q = call.query(f);
+        auto const K = call.key(f);
+        auto const V = call.value(f);
+        for (auto const storage : {feature_storage::f16, feature_storage::bf16}) {
+            auto const K_kept = call.stored(K, storage);
+            auto const V_kept = call.stored(V, storage);
+            auto const widened = [](host_features<double> const& kept) {
+                auto const wide = host_features<double>::allocate(kept.extents());
+                kept.visit([&](auto const& view) {
+                    for (std::size_t e = 0; e < view.size(); ++e) {
+                        wide.view().data()[e] = static_cast<double>(view.data()[e]);
+                    }
+                });
+                return wide;
+            };
+            auto const K_wide = widened(K_kept);
+            auto const V_wide = widened(V_kept);
+            auto const mixed = call.attend(Q, {{{&K, &V, 0}, {&K_kept, &V_kept, 1}},
+                                               {{&K_kept, &V_kept, 2}},
+                                               {{&K, &V, 2}, {&K_kept, &V_kept, 0}, {&K_kept, &V_kept, 1}}});
+            auto const wide = call.attend(Q, {{{&K, &V, 0}, {&K_wide, &V_wide, 1}},
+                                              {{&K_wide, &V_wide, 2}},
+                                              {{&K, &V, 2}, {&K_wide, &V_wide, 0}, {&K_wide, &V_wide, 1}}});
+            for (std::size_t e = 0; e < mixed.view().size(); ++e) {
+                REQUIRE(mixed.view().data()[e] == doctest::Approx(wide.view().data()[e]).epsilon(1e-12));
+            }
+        }
+        CHECK(call.stored(K, feature_storage::same).view().data() == K.view().data());
+    }
 }

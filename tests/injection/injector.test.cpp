@@ -11,6 +11,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 using namespace genrender;
@@ -251,5 +254,44 @@ TEST_SUITE("injection/injector") {
                              value_error);
         CHECK(inject.joined_features(taken)->view().data() == world.f_KF.view().data());
         CHECK(inject.blended_features(taken)->view().data() == world.F_KF.view().data());
+    }
+
+    TEST_CASE_TEMPLATE("[GR eq. 5, 6] features kept in 16 bits change F_out by their rounding alone", Real, float,
+                       double) {
+        recorded_world<Real> const exact;
+        auto const run = [](recorded_world<Real> const& world) {
+            auto call = world.call({{1}, 0});
+            return world.inject()(call);
+        };
+        auto const expected = run(exact);
+        for (auto const& [storage, unit] :
+             {std::pair(feature_storage::f16, 0x1p-11), {feature_storage::bf16, 0x1p-8}}) {
+            recorded_world<Real> world;
+            recorder<host_features<Real>> const pass(
+                world.bank, [](attention_place place) { return place.site.value == 1; }, true, storage);
+            call_of<Real> keyframes({{1}, 0}, KF, world.f_KF, world.module);
+            pass(keyframes);
+            auto const found = run(world);
+            double worst = 0;
+            double largest = 0;
+            for (std::size_t e = 0; e < found.view().size(); ++e) {
+                worst =
+                    std::max(worst, std::abs(static_cast<double>(found.view().data()[e] - expected.view().data()[e])));
+                largest = std::max(largest, std::abs(static_cast<double>(expected.view().data()[e])));
+            }
+            // A logit of some units moves by as many roundings, a weight by that share, values by one more.
+            CHECK(worst <= 8 * unit * largest);
+            CHECK(worst > 0);
+        }
+    }
+
+    TEST_CASE("it is plain where the bank holds nothing") {
+        recorded_world<float> const world;
+        auto const pass = world.inject();
+        CHECK(is_plain_at(pass, {{0}, 0}));
+        CHECK(is_plain_at(pass, {{1}, 1}));
+        CHECK_FALSE(is_plain_at(pass, {{1}, 0}));
+        auto call = world.call({{0}, 0});
+        CHECK(equal_bits(pass(call), plain_attention{}(call)));
     }
 }

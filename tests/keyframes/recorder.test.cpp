@@ -2,6 +2,7 @@
 // [GR alg. 1: f_KF, F_KF] The keyframe pass: extended attention where places take part, features kept once.
 #include <genrender/keyframes/recorder.hpp>
 
+#include <genrender/attention/attention_processor.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 
@@ -204,5 +205,28 @@ TEST_SUITE("keyframes/recorder") {
             REQUIRE(bank.find({{at / 2}, at % 2}) != nullptr);
             CHECK(equal_bits(*bank.find({{at / 2}, at % 2})->F_KF, extended(call)));
         }
+    }
+
+    TEST_CASE("features are kept in the format asked for and keyframes attend before they are rounded") {
+        module_type const module(channels, 2, 1);
+        feature_bank<features> bank(1, 1);
+        recorder<features> const pass(bank, always, true, feature_storage::f16);
+        call_type call({}, drawn, input(3), module);
+        auto const F = pass(call);
+        CHECK(equal_bits(F, extended(call)));
+        auto const& kept = *bank.find({});
+        for (auto const* const one : {&*kept.K_KF, &*kept.V_KF, &*kept.F_KF}) {
+            CHECK(one->storage() == feature_storage::f16);
+        }
+        kept.F_KF->visit([&](auto const& view) {
+            CHECK(static_cast<double>(view(1, 2, 3)) == doctest::Approx(F.view()(1, 2, 3)).epsilon(0x1p-11));
+        });
+    }
+
+    TEST_CASE("it is plain where it keeps nothing") {
+        feature_bank<features> bank(2, 1);
+        recorder<features> const pass(bank, [](attention_place place) { return place.site.value == 1; });
+        CHECK(is_plain_at(pass, {{0}, 0}));
+        CHECK_FALSE(is_plain_at(pass, {{1}, 0}));
     }
 }

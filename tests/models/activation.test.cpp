@@ -4,7 +4,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 using namespace genrender;
@@ -43,6 +48,32 @@ TEST_SUITE("models/activation") {
             silu<Real>(alone);
             CHECK(copy[begin + 3] == alone[0]);
         }
+    }
+
+    TEST_CASE_TEMPLATE("gating by GELU agrees with the error function at any size and value", Real, float, double) {
+        auto const bound = std::is_same_v<Real, float> ? 3e-7 : 1e-15;
+        for (std::size_t size = 1; size < 40; ++size) {
+            std::vector<Real> gates(size);
+            for (std::size_t i = 0; i < size; ++i) {
+                gates[i] = Real(0.37) * static_cast<Real>(i * 29 % 41) - Real(7);
+            }
+            std::vector<Real> values(size, Real(2));
+            gate_by_gelu<Real>(values, gates);
+            for (std::size_t i = 0; i < size; ++i) {
+                auto const b = static_cast<double>(gates[i]);
+                auto const expected = b * std::erfc(-b / std::sqrt(2.0));
+                REQUIRE(std::abs(static_cast<double>(values[i]) - expected) <=
+                        bound * std::max(1.0, std::abs(expected)));
+            }
+        }
+        for (int i = -4000; i <= 4000; ++i) {
+            auto const x = static_cast<Real>(i) / 250;
+            auto const expected = static_cast<double>(x) * 0.5 * std::erfc(-static_cast<double>(x) / std::sqrt(2.0));
+            REQUIRE(std::abs(static_cast<double>(gelu(x)) - expected) <= bound * std::max(1.0, std::abs(expected)));
+        }
+        CHECK(std::abs(gelu(Real(-1000))) < Real(1e-30));
+        CHECK(gelu(Real(1000)) == 1000);
+        CHECK(std::isnan(gelu(std::numeric_limits<Real>::quiet_NaN())));
     }
 
     TEST_CASE_TEMPLATE("GELU is x times the normal distribution function", Real, float, double) {

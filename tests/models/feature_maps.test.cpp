@@ -42,6 +42,15 @@ TEST_SUITE("models/feature_maps") {
                              shape_error);
     }
 
+    TEST_CASE("a map is multiplied by a number") {
+        stack<double, 2> a({2, 1});
+        a(0, 0) = 3;
+        a(1, 0) = -4;
+        scale_by(a.view(), 0.5);
+        CHECK(a(0, 0) == 1.5);
+        CHECK(a(1, 0) == -2);
+    }
+
     TEST_CASE("a scaled map is added") {
         stack<double, 2> a({1, 2});
         stack<double, 2> b({1, 2});

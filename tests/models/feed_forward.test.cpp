@@ -6,6 +6,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+
 using namespace genrender;
 using namespace genrender::testing;
 
@@ -30,5 +33,20 @@ TEST_SUITE("models/feed_forward") {
         auto h = x;
         layer.add_to(h.view(), x);
         check_close<Real, 2>(h.view(), expected);
+    }
+
+    TEST_CASE_TEMPLATE("a token is the same to the bit in any company and on any number of threads", Real, float,
+                       double) {
+        auto source = weights<Real>::seeded(1, "test");
+        feed_forward<Real> const layer(source, "ff", 4);
+        auto const x = random_stack<Real, 2>({1500, 4}, 1);
+        auto alone = x;
+        auto shared = x;
+        layer.add_to(alone.view(), x);
+        layer.add_to(shared.view(), x, threaded_loop(3));
+        CHECK(std::equal(alone.data(), alone.data() + alone.size(), shared.data()));
+        auto some = random_stack<Real, 2>({1500, 4}, 1);
+        layer.add_to(some.view().slice(700, 9), x.view().slice(700, 9));
+        CHECK(std::equal(&some(700, 0), &some(709, 0), &alone(700, 0)));
     }
 }

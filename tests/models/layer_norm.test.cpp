@@ -6,6 +6,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstddef>
+
 using namespace genrender;
 using namespace genrender::testing;
 
@@ -27,6 +30,34 @@ TEST_SUITE("models/layer_norm") {
             }
             CHECK(std::abs(sum / 40) < 1e-5);
             CHECK(squares / 40 == doctest::Approx(1).epsilon(1e-3));
+        }
+    }
+
+    TEST_CASE_TEMPLATE("every number of channels agrees with the definition and in place too", Real, float, double) {
+        for (std::size_t const channels : {1U, 3U, 8U, 17U, 33U, 56U}) {
+            auto source = weights<Real>::seeded(1, "test");
+            layer_norm<Real> const norm(source, "norm", channels);
+            auto const bias = source.take("norm.bias", {channels});
+            auto values = random_stack<Real, 2>({3, channels}, 3);
+            stack<Real, 2> expected(values.extents());
+            for (std::size_t token = 0; token < 3; ++token) {
+                double mean = 0;
+                double variance = 0;
+                for (std::size_t c = 0; c < channels; ++c) {
+                    mean += static_cast<double>(values(token, c)) / static_cast<double>(channels);
+                }
+                for (std::size_t c = 0; c < channels; ++c) {
+                    auto const rest = static_cast<double>(values(token, c)) - mean;
+                    variance += rest * rest / static_cast<double>(channels);
+                }
+                for (std::size_t c = 0; c < channels; ++c) {
+                    expected(token, c) =
+                        static_cast<Real>((static_cast<double>(values(token, c)) - mean) / std::sqrt(variance + 1e-5)) +
+                        bias[c];
+                }
+            }
+            norm(values.view(), values);
+            check_close<Real, 2>(values.view(), expected);
         }
     }
 

@@ -3,15 +3,27 @@
 #include <genrender/models/reference_network.hpp>
 
 #include "../support/denoiser_laws.hpp"
+#include "../support/random_scene.hpp"
 #include "small_networks.hpp"
 
+#include <genrender/keyframes/recorder.hpp>
+#include <genrender/pipeline/render.hpp>
+
 #include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 using namespace genrender;
 using namespace genrender::testing;
 
 static_assert(denoiser<reference_network<float>>);
 static_assert(denoiser<reference_network<double, threaded_loop>>);
+static_assert(residual_lender<reference_network<float>>);
 
 namespace {
 
@@ -64,6 +76,23 @@ struct noting_attention {
             extents->push_back(call.f().extents());
         }
         return plain_attention{}(call);
+    }
+};
+
+/// A network without its capabilities.
+template <class Network>
+struct bare_network {
+    using real_type = typename Network::real_type;
+    using features_type = typename Network::features_type;
+    Network const* network;
+    std::size_t latent_channels() const { return network->latent_channels(); }
+    grid_extents latent_grid() const { return network->latent_grid(); }
+    std::span<attention_site const> sites() const { return network->sites(); }
+    std::size_t branches() const { return network->branches(); }
+    template <class Processor>
+    void operator()(strided_view<real_type, 4> x0, strided_view<real_type const, 4> z, real_type sigma,
+                    std::span<frame_index const> frames, Processor& processor) const {
+        (*network)(x0, z, sigma, frames, processor);
     }
 };
 
@@ -245,5 +274,137 @@ TEST_SUITE("models/reference_network") {
         conditioning.prompt = stack<float, 2>({2, 7});
         CHECK_THROWS_WITH_AS((reference_network<float>(all, conditioning)),
                              "reference_network: prompt is [2, 7], expected [2, 6]", shape_error);
+    }
+
+    TEST_CASE("a call ends behind the last wanted site of each branch") {
+        auto const network = small_network<float>();
+        auto const z = random_stack<float, 4>({2, 4, 4, 6}, 2);
+        std::array const frames{frame_index{2}, frame_index{0}};
+        using last_type = std::array<std::optional<site_index>, 2>;
+        auto const ran = [&](last_type const& last) {
+            std::vector<attention_place> places;
+            std::vector<std::array<std::size_t, 3>> extents;
+            noting_attention const noting{&places, &extents};
+            network.run_until(z.view(), 1.0f, frames, noting, last);
+            std::array<std::size_t, 2> counts{};
+            for (auto const place : places) {
+                CHECK(place.site.value == counts[place.branch]++);
+            }
+            return counts;
+        };
+        CHECK(ran({site_index{5}, site_index{5}}) == std::array<std::size_t, 2>{6, 6});
+        CHECK(ran({site_index{4}, site_index{1}}) == std::array<std::size_t, 2>{5, 2});
+        CHECK(ran({std::nullopt, site_index{0}}) == std::array<std::size_t, 2>{0, 1});
+        plain_attention const plain;
+        std::array<std::optional<site_index>, 1> const one{};
+        CHECK_THROWS_WITH_AS(network.run_until(z.view(), 1.0f, frames, plain, one),
+                             "reference_network: last is [1], expected [2]", shape_error);
+    }
+
+    TEST_CASE_TEMPLATE("features recorded in a call that ends early are those of a whole one to the bit", Real, float,
+                       double) {
+        auto const network = small_network<Real>();
+        auto const z = random_stack<Real, 4>({2, 4, 4, 6}, 2);
+        std::array const frames{frame_index{2}, frame_index{0}};
+        auto const takes_part = [](attention_place place) { return place.site.value == 4; };
+        using bank_type = feature_bank<host_features<Real>>;
+        bank_type whole(6, 2);
+        bank_type early(6, 2);
+        recorder<host_features<Real>> const to_whole(whole, takes_part);
+        recorder<host_features<Real>> const to_early(early, takes_part);
+        stack<Real, 4> x0(z.extents());
+        network(x0.view(), z.view(), Real(2), frames, to_whole);
+        network.run_until(z.view(), Real(2), frames, to_early, last_sites(network, takes_part));
+        for (std::uint32_t branch = 0; branch < 2; ++branch) {
+            auto const& a = *whole.find({{4}, branch});
+            auto const& b = *early.find({{4}, branch});
+            for (auto const& [x, y] : {std::pair(a.K_KF, b.K_KF), {a.V_KF, b.V_KF}, {a.F_KF, b.F_KF}}) {
+                auto const size = x->view().size();
+                CHECK(std::equal(x->view().data(), x->view().data() + size, y->view().data()));
+            }
+        }
+    }
+
+    TEST_CASE_TEMPLATE("what a call lends gives the same estimate to the bit and skips the way down", Real, float,
+                       double) {
+        auto const network = small_network<Real>();
+        auto const z = random_stack<Real, 4>({3, 4, 4, 6}, 2);
+        std::array const all{frame_index{0}, frame_index{1}, frame_index{2}};
+        std::array const two{frame_index{1}, frame_index{2}};
+        typename reference_network<Real>::residuals_type lent;
+        plain_attention const plain;
+        std::array<std::optional<site_index>, 2> const last{site_index{5}, site_index{5}};
+        network.run_until(z.view(), Real(2), all, plain, last, &lent);
+        stack<Real, 4> expected({2, 4, 4, 6});
+        stack<Real, 4> found({2, 4, 4, 6});
+        network(expected.view(), z.view().slice(1, 2), Real(2), two, plain);
+        network(found.view(), z.view().slice(1, 2), Real(2), two, plain, lent);
+        CHECK(largest_difference(expected, found) == 0);
+
+        // Who does not say that he is plain gets it all computed; who does, the decoder's sites alone.
+        std::vector<attention_place> places;
+        std::vector<std::array<std::size_t, 3>> extents;
+        noting_attention const noting{&places, &extents};
+        network(found.view(), z.view().slice(1, 2), Real(2), two, noting, lent);
+        CHECK(places.size() == 12);
+        struct noting_plain : noting_attention {
+            bool is_plain_at(attention_place) const { return true; }
+        };
+        places.clear();
+        noting_plain const noting_and_plain{{&places, &extents}};
+        network(found.view(), z.view().slice(1, 2), Real(2), two, noting_and_plain, lent);
+        CHECK(places.size() == 4);
+        CHECK(largest_difference(expected, found) == 0);
+
+        // Another z is computed anew.
+        auto const other = random_stack<Real, 4>({2, 4, 4, 6}, 3);
+        network(expected.view(), other.view(), Real(2), two, plain);
+        network(found.view(), other.view(), Real(2), two, plain, lent);
+        CHECK(largest_difference(expected, found) == 0);
+    }
+
+    TEST_CASE("hints that are not kept give the same estimate to the bit") {
+        auto const z = random_stack<float, 4>({3, 4, 4, 6}, 2);
+        auto const with = [&](std::size_t hint_bytes) {
+            auto source = reference_weights<float>::seeded(1, small_config());
+            auto conditioning = source.conditioning(moving_box(), "stripes");
+            return estimate_of(reference_network<float>(small_config(), source.unet, source.controlnet,
+                                                        std::move(conditioning), {}, hint_bytes),
+                               z, 1.0f);
+        };
+        CHECK(largest_difference(with(std::size_t{1} << 26), with(0)) == 0);
+    }
+
+    TEST_CASE("[GR alg. 1] a run that ends keyframe passes early and reuses keyframes is the same to the bit") {
+        auto const network = small_network<float>();
+        bare_network<reference_network<float>> const bare{&network};
+        CHECK_FALSE(stoppable_denoiser<bare_network<reference_network<float>>>);
+        auto const maps = random_scene(33, 3, {16, 24}, 2);
+        auto const run = [&](auto const& phi, auto&& change) {
+            render_settings<float> settings;
+            settings.steps = 3;
+            settings.keyframes.count = 2;
+            change(settings);
+            render_report report;
+            return render(phi, to_uv_view(maps), settings, report, {}, threaded_loop(2));
+        };
+        auto const as_it_is = [](auto&) {};
+        auto const expected = run(bare, as_it_is);
+        CHECK(run(network, as_it_is) == expected);
+        CHECK(run(network, [](auto& settings) { settings.reuses_keyframes = false; }) == expected);
+        CHECK(run(network, [](auto& settings) { settings.frames_per_call = 2; }) == expected);
+        // Where the encoder takes part the way down of keyframes is another one, and nothing is reused.
+        auto const everywhere = [](auto& settings) {
+            settings.layers = [](attention_site const&, std::uint32_t) { return true; };
+        };
+        auto const all = run(bare, everywhere);
+        CHECK(run(network, everywhere) == all);
+        CHECK(all != expected);
+        auto const one_branch = [](auto& settings) {
+            settings.layers = [](attention_site const& site, std::uint32_t branch) {
+                return is_in_decoder(site, branch) && branch == 1;
+            };
+        };
+        CHECK(run(network, one_branch) == run(bare, one_branch));
     }
 }

@@ -3,11 +3,19 @@
 // sequence denoiser's test.
 #include <genrender/pipeline/generative_rendering.hpp>
 
+#include "../baselines/layered_denoiser.hpp"
 #include "../support/analytic_denoiser.hpp"
 #include "../support/random_scene.hpp"
 #include "../support/sequence_method_laws.hpp"
 
+#include <genrender/pipeline/render.hpp>
+
 #include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
 
 using namespace genrender;
 
@@ -59,5 +67,52 @@ TEST_SUITE("pipeline/generative_rendering") {
         CHECK(generative_rendering{}.uses_correspondence(settings));
         settings.post_attention = false;
         CHECK(!generative_rendering{}.uses_correspondence(settings));
+    }
+    TEST_CASE("[GR alg. 1] keys and values of keyframes are projected once per step and layer") {
+        auto const maps = testing::random_scene(33, 5, {32, 32}, 3);
+        testing::layered_denoiser<double> const phi;
+        auto const settings = four_steps();
+        render_report report;
+        render(phi, to_uv_view(maps), settings, report);
+        for (std::size_t site = 0; site < phi.weights.size(); ++site) {
+            // 4 steps, 2 branches: 5 frames, and 2 keyframes that no frame projects again.
+            CHECK(phi.weights[site].keys == 4 * 2 * (5 + 2));
+            CHECK(phi.weights[site].values == 4 * 2 * (5 + 2));
+            CHECK(phi.weights[site].queries == 4 * 2 * (5 + 2));
+        }
+    }
+    TEST_CASE("correspondence is used where a step has keyframes and mixes them in") {
+        auto settings = four_steps();
+        CHECK(generative_rendering{}.uses_correspondence(settings));
+        settings.window_begin = settings.window_end = 0.5;
+        CHECK_FALSE(generative_rendering{}.uses_correspondence(settings));
+        settings.window_end = 1;
+        settings.post_attention = false;
+        CHECK_FALSE(generative_rendering{}.uses_correspondence(settings));
+    }
+    TEST_CASE("features kept in 16 bits change the frames by little") {
+        auto const maps = testing::random_scene(33, 5, {32, 32}, 3);
+        testing::layered_denoiser<float> const phi;
+        auto const run = [&](feature_storage storage) {
+            render_settings<float> settings;
+            settings.steps = 3;
+            settings.keyframes.count = 2;
+            settings.feature_storage = storage;
+            render_report report;
+            return render(phi, to_uv_view(maps), settings, report);
+        };
+        auto const exact = run(feature_storage::same);
+        for (auto const& [storage, unit] :
+             {std::pair(feature_storage::f16, 0x1p-11), {feature_storage::bf16, 0x1p-8}}) {
+            auto const rounded = run(storage);
+            double worst = 0;
+            double largest = 0;
+            for (std::size_t e = 0; e < exact.size(); ++e) {
+                worst = std::max(worst, static_cast<double>(std::abs(rounded.data()[e] - exact.data()[e])));
+                largest = std::max(largest, static_cast<double>(std::abs(exact.data()[e])));
+            }
+            CHECK(worst > 0);
+            CHECK(worst < 32 * unit * largest); // three steps of a network that amplifies
+        }
     }
 }

@@ -28,6 +28,20 @@ concept attention_processor = attention_call<Call> && requires(Processor& proces
     { processor(call) } -> std::convertible_to<typename Call::features_type>;
 };
 
+/// Whether a processor does at a place what plain_attention does, to the bit: what a network computes before its first
+/// other place then depends on z, sigma and the frame alone, and can be reused. A processor says so by an optional
+/// member `is_plain_at(place)`; nothing is known of one without it.
+template <class Processor>
+bool is_plain_at(Processor const& processor, attention_place place) {
+    if constexpr (requires {
+                      { processor.is_plain_at(place) } -> std::convertible_to<bool>;
+                  }) {
+        return processor.is_plain_at(place);
+    } else {
+        return false;
+    }
+}
+
 /// The least that an attention_processor is, for checking denoisers; never run.
 struct attention_processor_archetype {
     template <attention_call Call>

@@ -2,17 +2,22 @@
 // The handle of features in host memory: a view, and a share in the memory where the library or the engine gave one.
 #pragma once
 
+#include <genrender/attention/feature_storage.hpp>
+#include <genrender/core/linalg.hpp>
 #include <genrender/core/strided_view.hpp>
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <memory>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace genrender {
 
-/// Features [frames, tokens, channels] in host memory. Copying copies the handle, never an element.
+/// Features [frames, tokens, channels] in host memory, as `Real` or kept in 16 bits. Copying copies the handle, never
+/// an element.
 template <class Real>
 class host_features {
 public:
@@ -29,19 +34,71 @@ public:
 
     /// Owns new zeros.
     static host_features allocate(std::array<std::size_t, 3> const& extents) {
-        auto values = std::make_shared<std::vector<Real>>(extents[0] * extents[1] * extents[2]);
-        auto const view = strided_view<Real, 3>(values->data(), extents);
-        return {view, std::move(values)};
+        host_features features;
+        features.template own<Real>(extents);
+        return features;
     }
 
-    strided_view<Real, 3> view() const { return view_; }
-    std::array<std::size_t, 3> const& extents() const { return view_.extents(); }
+    /// Owns the values of `from`, each rounded to the nearest of the format; of another handle's memory in any case.
+    static host_features rounded(strided_view<Real const, 3> from, feature_storage storage) {
+        host_features features;
+        switch (storage) {
+        case feature_storage::f16:
+            features.template own_rounded<float16>(from);
+            break;
+        case feature_storage::bf16:
+            features.template own_rounded<bfloat16>(from);
+            break;
+        default:
+            copy(features.template own<Real>(from.extents()), from);
+        }
+        return features;
+    }
+
+    /// The features, which are kept as `Real`.
+    strided_view<Real, 3> view() const {
+        assert(storage() == feature_storage::same && "host_features: view() of features that are kept in 16 bits");
+        return *std::get_if<strided_view<Real, 3>>(&view_);
+    }
+
+    /// What `use` makes of the view of the elements as they are kept: of Real, float16 or bfloat16.
+    template <class Use>
+    decltype(auto) visit(Use&& use) const {
+        return std::visit(std::forward<Use>(use), view_);
+    }
+
+    std::array<std::size_t, 3> const& extents() const {
+        return visit([](auto const& view) -> std::array<std::size_t, 3> const& { return view.extents(); });
+    }
+    feature_storage storage() const { return static_cast<feature_storage>(view_.index()); }
     bool is_borrowed() const { return owner_ == nullptr; }
 
-    friend strided_view<Real, 3> to_view(host_features const& features) { return features.view_; }
+    friend strided_view<Real, 3> to_view(host_features const& features) { return features.view(); }
 
 private:
-    strided_view<Real, 3> view_;
+    template <class T>
+    strided_view<T, 3> own(std::array<std::size_t, 3> const& extents) {
+        auto values = std::make_shared<std::vector<T>>(extents[0] * extents[1] * extents[2]);
+        strided_view<T, 3> const view(values->data(), extents);
+        view_ = view;
+        owner_ = std::move(values);
+        return view;
+    }
+
+    template <class T>
+    void own_rounded(strided_view<Real const, 3> from) {
+        auto const to = own<T>(from.extents());
+        for (std::size_t i = 0; i < from.extent(0); ++i) {
+            for (std::size_t t = 0; t < from.extent(1); ++t) {
+                for (std::size_t c = 0; c < from.extent(2); ++c) {
+                    to(i, t, c) = static_cast<T>(from(i, t, c));
+                }
+            }
+        }
+    }
+
+    // In the order of feature_storage.
+    std::variant<strided_view<Real, 3>, strided_view<float16, 3>, strided_view<bfloat16, 3>> view_;
     std::shared_ptr<void const> owner_;
 };
 

@@ -29,6 +29,9 @@ struct plain_attention {
         auto const V = call.value(f);
         return call.attend(Q, own_attention_sources(K, V, call.frames().size()));
     }
+
+    /// Everywhere.
+    bool is_plain_at(attention_place) const { return true; }
 };
 
 } // namespace genrender

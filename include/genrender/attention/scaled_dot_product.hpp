@@ -2,26 +2,23 @@
 // [GR eq. 1] Attn(Q; K; V) = Softmax(Q K^T / sqrt(d)) V, over keys and values that lie in several blocks.
 #pragma once
 
-#include <genrender/core/linalg.hpp>
+#include <genrender/attention/attention_scratch.hpp>
+#include <genrender/attention/attention_tile.hpp>
+#include <genrender/attention/key_value_view.hpp>
+#include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 namespace genrender {
-
-/// Keys and values of some tokens, each [tokens, channels].
-template <class Real>
-struct key_value_view {
-    strided_view<Real const, 2> K;
-    strided_view<Real const, 2> V;
-};
 
 namespace detail {
 
@@ -36,51 +33,85 @@ strided_view<Real const, 2> with_contiguous_rows(strided_view<Real const, 2> vie
     return storage.view();
 }
 
-/// Columns of one head of a view [tokens, channels].
-template <class Real>
-strided_view<Real, 2> head_of(strided_view<Real, 2> view, std::size_t head, std::size_t head_size) {
-    return {view.data() + static_cast<std::ptrdiff_t>(head * head_size), {view.extent(0), head_size}, view.strides()};
+/// Calls body(tile, first, count) for tiles that cover `queries`, one memory after the other: full ones, and at the end
+/// narrow ones where they are less work.
+template <class Real, class Body>
+void each_query_tile(Real* memory, std::size_t queries, std::size_t head_size, Body&& body) {
+    using full = query_tile<Real, tile_registers>;
+    using narrow = query_tile<Real, 1>;
+    std::size_t first = 0;
+    while (first < queries) {
+        auto const rest = queries - first;
+        auto const visit = [&]<class Tile>(std::type_identity<Tile>) {
+            auto const count = std::min(rest, Tile::queries);
+            body(Tile(memory, head_size), first, count);
+            memory += Tile::size(head_size);
+            first += count;
+        };
+        if (2 * rest > full::queries) {
+            visit(std::type_identity<full>{});
+        } else {
+            visit(std::type_identity<narrow>{});
+        }
+    }
 }
 
-/// Scratch of one tile of queries: its logits, running maxima and sums.
+/// Attention of some queries of one head, F and Q [queries, head_size]. Each tile of keys is read once for all of them.
 template <class Real>
-struct attention_tile {
-    static constexpr std::size_t queries = 64;
-    static constexpr std::size_t keys = 256;
-    matrix<Real> logits{Eigen::Index{queries}, Eigen::Index{keys}};
-    Eigen::Array<Real, Eigen::Dynamic, 1> maximum{Eigen::Index{queries}};
-    Eigen::Array<Real, Eigen::Dynamic, 1> sum{Eigen::Index{queries}};
-};
+void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::span<key_value_view<Real> const> blocks,
+                 std::size_t head) {
+    using full = query_tile<Real, tile_registers>;
+    auto const queries = Q.extent(0);
+    auto const head_size = Q.extent(1);
+    auto const tiles = (queries + full::queries - 1) / full::queries;
+    scratch_memory<Real> memory(key_tiles<Real>::scratch(head_size) + (tile_keys + 1) * full::queries +
+                                tiles * full::size(head_size));
+    key_tiles<Real> keys(blocks, head, head_size, memory);
+    auto* const weights = memory.take((tile_keys + 1) * full::queries);
+    auto* const tile_memory = memory.take(tiles * full::size(head_size));
 
-/// Adds one run of keys to a tile of the online softmax (Milakov and Gimelshein 2018): everything summed so far is
-/// rescaled whenever a larger logit appears, so the matrix of all logits is never in memory.
-template <class Real, class Output>
-void attend_to_run(Output F, matrix_map<Real const> Q, matrix_map<Real const> K, matrix_map<Real const> V, Real scale,
-                   attention_tile<Real>& tile) {
-    auto const rows = Q.rows();
-    auto logits = tile.logits.topLeftCorner(rows, K.rows());
-    logits.noalias() = Q * K.transpose();
-    logits *= scale;
-    for (Eigen::Index r = 0; r < rows; ++r) {
-        auto const maximum = std::max(tile.maximum(r), logits.row(r).maxCoeff());
-        auto const rescale = std::exp(tile.maximum(r) - maximum);
-        logits.row(r).array() = (logits.row(r).array() - maximum).exp();
-        tile.sum(r) = tile.sum(r) * rescale + logits.row(r).sum();
-        tile.maximum(r) = maximum;
-        F.row(r) *= rescale;
+    // exp(x) = 2^(x log2 e).
+    auto const scale = std::numbers::log2e_v<Real> / std::sqrt(static_cast<Real>(head_size));
+    each_query_tile(tile_memory, queries, head_size, [&](auto const& tile, std::size_t first, std::size_t count) {
+        read_queries(tile, Q.slice(first, count), scale);
+    });
+    for (bool fresh = true; keys.next(); fresh = false) {
+        each_query_tile(tile_memory, queries, head_size, [&](auto const& tile, std::size_t, std::size_t) {
+            attend_to_tile(tile, keys.tile(), weights, fresh);
+        });
     }
-    F.noalias() += logits * V;
+    each_query_tile(tile_memory, queries, head_size, [&](auto const& tile, std::size_t first, std::size_t count) {
+        write_results(F.slice(first, count), tile);
+    });
+}
+
+/// How many queries one run over the keys takes, all runs alike: as many as fit the second cache, and so few that there
+/// are runs for several threads. The result does not depend on it.
+template <class Real>
+std::size_t queries_of_run(std::size_t tokens, std::size_t head_size) {
+    using full = query_tile<Real, tile_registers>;
+    constexpr std::size_t cached_bytes = 640 * 1024;
+    constexpr std::size_t most_queries = 1024;
+    auto const fitting = cached_bytes / (full::size(head_size) * sizeof(Real));
+    auto const most = std::clamp<std::size_t>(fitting, 1, most_queries / full::queries);
+    auto const tiles = (tokens + full::queries - 1) / full::queries;
+    auto const runs = (tiles + most - 1) / most;
+    return full::queries * ((tiles + runs - 1) / runs);
 }
 
 } // namespace detail
 
 /// Writes F [tokens, channels]: multi-head attention of Q [tokens, channels] over the tokens of all `blocks` together,
 /// in which head h owns channels [h d, (h + 1) d), d = channels / heads. Exact softmax, safe against overflow; blocks
-/// are read where they lie. F shares no memory with Q, K or V. Throws shape_error if F, K or V do not fit Q,
-/// value_error if heads do not divide the channels or no block holds a token.
-template <class Real>
+/// are read where they lie, and nothing grows with their number: scratch is about 1 MB a thread of `loop`, which runs
+/// over heads and parts of the queries. A row of F depends on its query and on the sequence of all keys alone, to the
+/// last bit: neither on the other queries, nor on `loop`, nor on where one block ends and the next begins. F shares no
+/// memory with Q, K or V. Throws shape_error if F, K, V or counts do not fit, value_error if heads do not divide the
+/// channels, no block holds a token or a count is not above 0.
+template <class Real, parallel_loop Loop = sequential_loop>
 void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
-                        std::type_identity_t<std::span<key_value_view<Real> const>> blocks, std::size_t heads) {
+                        std::type_identity_t<std::span<key_value_view<Real> const>> blocks, std::size_t heads,
+                        Loop const& loop = Loop{}) {
     auto const tokens = Q.extent(0);
     auto const channels = Q.extent(1);
     require_shape("scaled_dot_product", "F", F, Q.extents());
@@ -88,60 +119,34 @@ void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
                   ("a divisor of the " + std::to_string(channels) + " channels").c_str());
     std::size_t sources = 0;
     for (auto const& block : blocks) {
-        require_shape("scaled_dot_product", "K", block.K, {block.K.extent(0), channels});
-        require_shape("scaled_dot_product", "V", block.V, block.K.extents());
-        sources += block.K.extent(0);
+        std::array const expected{block.K.extent(0), channels};
+        require_extents("scaled_dot_product", "K", block.K.extents(), expected);
+        require_extents("scaled_dot_product", "V", block.V.extents(), expected);
+        if (block.counts.extent(0) > 0) {
+            require_shape("scaled_dot_product", "counts", block.counts, {expected[0]});
+        }
+        for (std::size_t k = 0; k < block.counts.extent(0); ++k) {
+            auto const count = block.counts(k);
+            require_value(count > 0 && count <= std::numeric_limits<Real>::max(), "scaled_dot_product", "counts", count,
+                          "finite and above 0");
+        }
+        sources += expected[0];
     }
     require_value(sources > 0 || tokens == 0, "scaled_dot_product", "blocks", "empty", "at least one key");
-    if (tokens == 0) {
+    if (tokens == 0 || channels == 0) {
         return; // Views of nothing may have no memory to point into.
     }
 
-    // Make rows contiguous where an engine's strides do not.
-    stack<Real, 2> F_storage;
-    stack<Real, 2> Q_storage;
-    auto const Q_rows = detail::with_contiguous_rows<Real>(Q, Q_storage);
-    auto F_rows = F;
-    if (!F.rows_are_contiguous()) {
-        F_storage = stack<Real, 2>(F.extents());
-        F_rows = F_storage.view();
-    }
-    std::vector<stack<Real, 2>> storage(2 * blocks.size());
-    std::vector<key_value_view<Real>> rows(blocks.begin(), blocks.end());
-    for (std::size_t b = 0; b < rows.size(); ++b) {
-        rows[b].K = detail::with_contiguous_rows<Real>(rows[b].K, storage[2 * b]);
-        rows[b].V = detail::with_contiguous_rows<Real>(rows[b].V, storage[2 * b + 1]);
-    }
-
-    using tile_type = detail::attention_tile<Real>;
-    tile_type tile;
     auto const head_size = channels / heads;
-    auto const scale = 1 / std::sqrt(static_cast<Real>(head_size));
-    for (std::size_t head = 0; head < heads; ++head) {
-        auto const F_head = detail::head_of(F_rows, head, head_size);
-        auto const Q_head = detail::head_of(Q_rows, head, head_size);
-        for (std::size_t q = 0; q < tokens; q += tile_type::queries) {
-            auto const q_count = std::min(tile_type::queries, tokens - q);
-            auto F_tile = to_matrix(F_head.slice(q, q_count));
-            F_tile.setZero();
-            tile.maximum.setConstant(-std::numeric_limits<Real>::infinity());
-            tile.sum.setZero();
-            for (auto const& block : rows) {
-                auto const K_head = detail::head_of(block.K, head, head_size);
-                auto const V_head = detail::head_of(block.V, head, head_size);
-                for (std::size_t k = 0; k < block.K.extent(0); k += tile_type::keys) {
-                    auto const k_count = std::min(tile_type::keys, block.K.extent(0) - k);
-                    detail::attend_to_run<Real>(F_tile, to_matrix(Q_head.slice(q, q_count)),
-                                                to_matrix(K_head.slice(k, k_count)),
-                                                to_matrix(V_head.slice(k, k_count)), scale, tile);
-                }
-            }
-            F_tile.array().colwise() /= tile.sum.head(static_cast<Eigen::Index>(q_count));
-        }
-    }
-    if (F_rows.data() != F.data()) {
-        copy(F, in_view<Real, 2>(F_rows));
-    }
+    auto const run = detail::queries_of_run<Real>(tokens, head_size);
+    auto const runs = (tokens + run - 1) / run;
+    loop(heads * runs, [&](std::size_t i) {
+        auto const head = i / runs;
+        auto const first = i % runs * run;
+        auto const count = std::min(run, tokens - first);
+        detail::attend_head<Real>(detail::head_of(F.slice(first, count), head, head_size),
+                                  detail::head_of(Q.slice(first, count), head, head_size), blocks, head);
+    });
 }
 
 } // namespace genrender

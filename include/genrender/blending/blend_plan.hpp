@@ -6,10 +6,14 @@
 #include <genrender/blending/texel_weights.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/correspondence/reproject.hpp>
+#include <genrender/correspondence/token_matches.hpp>
 
+#include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -44,6 +48,59 @@ enum class texel_average : std::uint8_t {
     by_quality ///< by how well they see it, where the correspondence says (graded_correspondence_map)
 };
 
+/// A correspondence_map that answers for all tokens of a frame at once: `map.matches(from, to)` holds what
+/// `map.token_at(to, *map.point_at(from, t))` is for every token t, or is null where there is more to say than that.
+template <class Map>
+concept matched_correspondence_map = correspondence_map<Map> && requires(Map const& map, frame_index i) {
+    { map.matches(i, i) } -> std::same_as<std::shared_ptr<token_matches const>>;
+};
+
+namespace detail {
+
+/// The plan of keyframes that are alike, from their matches.
+template <class Real>
+blend_plan<Real> plan_of_matches(std::span<std::shared_ptr<token_matches const> const> matches, Real first_fill_share) {
+    auto const keyframes = matches.size();
+    auto const tokens = matches[0]->tokens.size();
+    // The weights of the keyframes by how many see a point: of the first that does, and of each other.
+    std::vector<std::array<Real, 2>> weights(keyframes + 1);
+    for (std::size_t seen = 1; seen <= keyframes; ++seen) {
+        auto const average = average_weight<Real>(seen);
+        weights[seen] = {unified_weight<Real>(0, average, first_fill_share),
+                         unified_weight<Real>(1, average, first_fill_share)};
+    }
+    std::vector<std::uint32_t const*> token;
+    std::vector<std::uint8_t const*> is_shown;
+    for (auto const& match : matches) {
+        token.push_back(match->tokens.data());
+        is_shown.push_back(match->is_shown.data());
+    }
+    blend_plan<Real> plan;
+    plan.offsets.resize(tokens + 1);
+    // Entries are written before it is known whether they count, so there is room for one more.
+    plan.sources.resize(tokens * keyframes + 1);
+    plan.weights.resize(tokens * keyframes + 1);
+    std::size_t entries = 0;
+    for (std::size_t t = 0; t < tokens; ++t) {
+        std::size_t seen = 0;
+        for (std::size_t k = 0; k < keyframes; ++k) {
+            seen += is_shown[k][t];
+        }
+        auto const first = entries;
+        for (std::size_t k = 0; k < keyframes; ++k) {
+            plan.sources[entries] = static_cast<std::uint32_t>(k * tokens) + token[k][t];
+            plan.weights[entries] = weights[seen][entries == first ? 0 : 1];
+            entries += is_shown[k][t];
+        }
+        plan.offsets[t + 1] = static_cast<std::uint32_t>(entries);
+    }
+    plan.sources.resize(entries);
+    plan.weights.resize(entries);
+    return plan;
+}
+
+} // namespace detail
+
 /// Compiles the plan that gives frame i its F_bar = pi_i(T_bar), T_bar = unified texture of `keyframes` in their order:
 /// a token whose surface point is seen by several keyframes mixes them by unified_weight, a token that no keyframe
 /// covers has no entry. Throws value_error if a frame does not exist, no keyframe is given or the share is outside [0,
@@ -59,6 +116,18 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
     }
     require_value(first_fill_share >= 0 && first_fill_share <= 1, "make_blend_plan", "first_fill_share",
                   first_fill_share, "a share in [0, 1]");
+
+    if constexpr (matched_correspondence_map<Map>) {
+        std::vector<std::shared_ptr<token_matches const>> matches;
+        if (average == texel_average::plain) {
+            for (auto const keyframe : keyframes) {
+                matches.push_back(map.matches(i, keyframe));
+            }
+        }
+        if (!matches.empty() && matches[0] != nullptr) {
+            return detail::plan_of_matches<Real>(matches, first_fill_share);
+        }
+    }
 
     auto const tokens = map.grid().size();
     blend_plan<Real> plan;

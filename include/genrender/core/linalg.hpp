@@ -12,6 +12,11 @@
 
 namespace genrender {
 
+/// The 16-bit formats in which features may be stored, IEEE binary16 and the upper half of a float; arithmetic is done
+/// in float or double.
+using float16 = Eigen::half;
+using bfloat16 = Eigen::bfloat16;
+
 /// A row-major matrix that owns its elements.
 template <class Real>
 using matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

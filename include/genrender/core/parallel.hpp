@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <atomic>
 #include <concepts>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -37,13 +39,106 @@ struct sequential_loop {
     }
 };
 
-/// The loop on `threads` threads, the caller's among them; indices are handed out one at a time, in order. Threads live
-/// as long as one loop: the work inside the library's loops is milliseconds and more.
+namespace detail {
+
+/// Threads that sleep until a loop has work to share. Any number of loops may share at once, one inside the other too:
+/// whoever shares works along, so nothing waits for a thread that is busy elsewhere.
+class worker_pool {
+public:
+    /// Up to `workers` threads, which start with the first work.
+    explicit worker_pool(std::size_t workers) : most_(workers) {}
+    worker_pool(worker_pool const&) = delete;
+    worker_pool& operator=(worker_pool const&) = delete;
+
+    ~worker_pool() {
+        {
+            std::lock_guard const lock(mutex_);
+            is_over_ = true;
+        }
+        work_is_there_.notify_all();
+        for (auto& worker : workers_) {
+            worker.join();
+        }
+    }
+
+    /// Calls `work()` here and on up to `helpers` threads that are idle; returns when all these calls have returned.
+    /// `work` does not throw.
+    template <class Work>
+    void share(Work const& work, std::size_t helpers) {
+        job shared{[](void const* object) { (*static_cast<Work const*>(object))(); }, &work, helpers};
+        {
+            std::lock_guard const lock(mutex_);
+            start_workers();
+            jobs_.push_back(&shared);
+        }
+        for (std::size_t i = 0; i < helpers; ++i) {
+            work_is_there_.notify_one();
+        }
+        work();
+        std::unique_lock lock(mutex_);
+        std::erase(jobs_, &shared); // Nobody joins any more.
+        work_is_done_.wait(lock, [&] { return shared.running == 0; });
+    }
+
+private:
+    struct job {
+        void (*run)(void const*);
+        void const* work;
+        std::size_t wanted; ///< threads that may still join
+        std::size_t running = 0;
+    };
+
+    void start_workers() {
+        try {
+            while (workers_.size() < most_) {
+                workers_.emplace_back([this] { serve(); });
+            }
+        } catch (...) {
+            most_ = workers_.size(); // A machine out of threads is slower, not wrong.
+        }
+    }
+
+    void serve() {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            work_is_there_.wait(lock, [this] { return is_over_ || !jobs_.empty(); });
+            if (is_over_) {
+                return;
+            }
+            auto& shared = *jobs_.front();
+            ++shared.running;
+            if (--shared.wanted == 0) {
+                jobs_.erase(jobs_.begin());
+            }
+            lock.unlock();
+            shared.run(shared.work);
+            lock.lock();
+            if (--shared.running == 0) {
+                work_is_done_.notify_all();
+            }
+        }
+    }
+
+    std::size_t most_;
+    std::mutex mutex_;
+    std::condition_variable work_is_there_;
+    std::condition_variable work_is_done_;
+    std::vector<job*> jobs_;
+    std::vector<std::thread> workers_;
+    bool is_over_ = false;
+};
+
+} // namespace detail
+
+/// The loop on `threads` threads, the caller's among them; indices are handed out one at a time, in order. The threads
+/// start with the first loop and live as long as the last copy of this object; a loop inside a loop takes those that
+/// are idle.
 class threaded_loop {
 public:
     /// 0 means as many threads as the machine has.
     explicit threaded_loop(std::size_t threads = 0)
-        : threads_(threads > 0 ? threads : std::max<std::size_t>(1, std::thread::hardware_concurrency())) {}
+        : threads_(threads > 0 ? threads : std::max<std::size_t>(1, std::thread::hardware_concurrency())),
+          pool_(std::make_shared<detail::worker_pool>(threads_ - 1)) {}
 
     std::size_t threads() const { return threads_; }
 
@@ -70,19 +165,7 @@ public:
                 }
             }
         };
-        std::vector<std::thread> helpers;
-        helpers.reserve(workers - 1);
-        try {
-            for (std::size_t i = 1; i < workers; ++i) {
-                helpers.emplace_back(work);
-            }
-        } catch (...) {
-            // A machine out of threads is slower, not wrong: those that started share the indices.
-        }
-        work();
-        for (auto& helper : helpers) {
-            helper.join();
-        }
+        pool_->share(work, workers - 1);
         if (failure) {
             std::rethrow_exception(failure);
         }
@@ -90,6 +173,7 @@ public:
 
 private:
     std::size_t threads_;
+    std::shared_ptr<detail::worker_pool> pool_;
 };
 
 } // namespace genrender

@@ -6,9 +6,10 @@
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
+#include <genrender/correspondence/kept_samples.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
-#include <genrender/correspondence/sample_tree.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
+#include <genrender/correspondence/token_matches.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 
@@ -18,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -29,6 +31,8 @@ struct footprint_map_settings {
     /// A frame shows a point if it lies at most this many half cells, along each axis of the screen, from something
     /// that the frame shows of the same object. Above 0.
     double reach = 1;
+    /// Bytes of matches between frames that a map may keep for later steps.
+    std::size_t kept_bytes = std::size_t{64} << 20;
 };
 
 /// A model of correspondence_map over canonical coordinates of D dimensions, UVs or rest positions. Every cell of the
@@ -38,12 +42,7 @@ struct footprint_map_settings {
 template <std::size_t D>
 class footprint_map {
 public:
-    /// A surface point and the pixel's footprint around it.
-    struct point_type {
-        object_index object;
-        std::array<float, D> place{};
-        std::optional<surface_footprint<D>> footprint; ///< none for a pixel without neighbours of its object
-    };
+    using point_type = footprint_point<D>;
 
     /// Compiles maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, canonical
     /// coordinates are not finite, or reach is not above 0.
@@ -51,7 +50,8 @@ public:
         requires(Maps::dimensions == D)
     footprint_map(Maps const& maps, grid_extents grid, footprint_map_settings const& settings = {},
                   Loop const& loop = {})
-        : grid_(grid), reach_(settings.reach), frames_(maps.frame_count()) {
+        : grid_(grid), reach_(settings.reach), frames_(maps.frame_count()),
+          matches_(std::make_shared<kept_matches>(settings.kept_bytes)) {
         require_value(settings.reach > 0, "footprint_map", "settings.reach", settings.reach, "a number above 0");
         cell_ = cell_extents("footprint_map", maps.grid(), grid);
         loop(frames_.size(), [&](std::size_t i) { compile(maps, {static_cast<std::uint32_t>(i)}); });
@@ -68,37 +68,30 @@ public:
     /// The token whose cell shows the point in that frame: of the kept pixels the closest on the screen, ties by lowest
     /// token.
     std::optional<token_index> token_at(frame_index frame, point_type const& point) const {
-        auto const found = sample_at(frame, point);
-        return found ? std::optional(found->token) : std::nullopt;
+        return token_in(frames_[frame.value], point);
+    }
+
+    /// The same for the points of all tokens of another frame. What was asked once is kept, see
+    /// footprint_map_settings::kept_bytes.
+    std::shared_ptr<token_matches const> matches(frame_index from, frame_index to) const {
+        return matches_->of(from, to, [&] { return match(frames_[from.value], frames_[to.value]); });
     }
 
     /// How well a frame shows a point, for averages over keyframes: the share of the cell that the point's object owns
     /// times how many of the frame's pixels a unit of surface fills; 0 where the frame does not show it.
     double quality_at(frame_index frame, point_type const& point) const {
-        auto const found = sample_at(frame, point);
-        return found ? double{found->purity} * found->density : 0;
+        auto const& objects = frames_[frame.value].of_object;
+        auto const kept = objects.find(point.object);
+        auto const* const found = kept != objects.end() ? kept->second.sample_at(point) : nullptr;
+        return found != nullptr ? double{found->purity} * found->density : 0;
     }
 
 private:
     static constexpr std::size_t samples_per_side = 4;
 
-    /// A pixel that speaks for its cell.
-    struct sample {
-        token_index token;
-        float purity = 0; ///< share of the cell's pixels that show the sample's object
-        std::array<float, D> place{};
-        std::optional<surface_footprint<D>> footprint;
-        double density = 0; ///< pixels a unit of canonical area
-    };
-
-    struct object_samples {
-        std::vector<sample> samples;
-        sample_tree<D> tree;
-    };
-
     struct frame_entry {
         std::vector<std::optional<point_type>> shown; ///< [tokens]
-        std::map<object_index, object_samples> of_object;
+        std::map<object_index, kept_samples<D>> of_object;
     };
 
     template <canonical_maps Maps>
@@ -113,12 +106,9 @@ private:
             }
             keep_samples(entry, maps, i, {t}, representative);
         }
+        auto const spacing = std::max(1.0, std::sqrt(static_cast<double>(cell_.size())) / samples_per_side);
         for (auto& [object, kept] : entry.of_object) {
-            std::vector<std::array<float, D>> places;
-            for (auto const& s : kept.samples) {
-                places.push_back(s.place);
-            }
-            kept.tree = sample_tree<D>(std::move(places));
+            kept.compile(reach_, cell_, spacing);
         }
     }
 
@@ -171,7 +161,7 @@ private:
             auto const purity = static_cast<float>(owned[c.object]) / static_cast<float>(cell_.size());
             auto const footprint = footprint_at(maps, i, c.at);
             auto const density = footprint ? 1 / footprint->area() : 0;
-            entry.of_object[c.object].samples.push_back({token, purity, maps.point_at(i, c.at), footprint, density});
+            entry.of_object[c.object].add({token, purity, maps.point_at(i, c.at), footprint, density});
         }
     }
 
@@ -182,59 +172,30 @@ private:
         return (at - middle) * (at - middle);
     }
 
-    /// The kept pixel of a frame that lies closest to a point on the screen, if it is within reach.
-    std::optional<sample> sample_at(frame_index frame, point_type const& point) const {
-        auto const& objects = frames_[frame.value].of_object;
-        auto const found = objects.find(point.object);
-        if (found == objects.end()) {
-            return std::nullopt;
+    token_matches match(frame_entry const& from, frame_entry const& to) const {
+        auto const tokens = grid_.size();
+        token_matches result{std::vector<std::uint32_t>(tokens), std::vector<std::uint8_t>(tokens)};
+        for (std::size_t t = 0; t < tokens; ++t) {
+            if (auto const& point = from.shown[t]) {
+                if (auto const token = token_in(to, *point)) {
+                    result.tokens[t] = token->value;
+                    result.is_shown[t] = 1;
+                }
+            }
         }
-        auto const& kept = found->second;
-        std::optional<sample> closest;
-        double closest_distance = 0;
-        kept.tree.visit_nearest(point.place, [&](std::size_t number) {
-            auto const& s = kept.samples[number];
-            auto const distance = screen_distance(s, point);
-            if (!distance || *distance > reach_) {
-                return;
-            }
-            if (!closest || std::pair(*distance, s.token) < std::pair(closest_distance, closest->token)) {
-                closest = s;
-                closest_distance = *distance;
-            }
-        });
-        return closest;
+        return result;
     }
 
-    /// Where a point lies from a kept pixel on the screen of its frame, in half cells along the axis on which it is
-    /// further; none if it lies on a surface that faces the other way or not in the pixel's plane.
-    std::optional<double> screen_distance(sample const& s, point_type const& point) const {
-        // Before all else: mirrored halves may have exactly the same places.
-        if (s.footprint && point.footprint && !faces_alike(*s.footprint, *point.footprint)) {
-            return std::nullopt;
-        }
-        if (s.place == point.place) {
-            return 0;
-        }
-        // A lonely pixel is measured by the footprint of the one who asks.
-        auto const& measure = s.footprint ? s.footprint : point.footprint;
-        if (!measure) {
-            return std::nullopt;
-        }
-        auto const offset = offset_on(*measure, s.place, point.place);
-        auto const height = static_cast<double>(cell_.height);
-        auto const width = static_cast<double>(cell_.width);
-        auto const limit = 0.5 * std::sqrt(measure->area() * height * width);
-        if (offset.off_plane > limit) {
-            return std::nullopt;
-        }
-        return std::max(std::abs(offset.down) / height, std::abs(offset.right) / width) * 2;
+    static std::optional<token_index> token_in(frame_entry const& frame, point_type const& point) {
+        auto const found = frame.of_object.find(point.object);
+        return found != frame.of_object.end() ? found->second.token_at(point) : std::nullopt;
     }
 
     grid_extents grid_;
     grid_extents cell_;
     double reach_;
     std::vector<frame_entry> frames_;
+    std::shared_ptr<kept_matches> matches_; ///< shared by copies, for which all is the same
 };
 
 /// Deduces the dimensions from the maps.

@@ -6,11 +6,13 @@
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/footprint_map.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
+#include <genrender/correspondence/token_matches.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -61,6 +63,12 @@ public:
 
     std::optional<token_index> token_at(frame_index frame, point_type const& point) const {
         return std::visit([&](auto const& map) { return map.token_at(frame, own_point(map, point)); }, map_);
+    }
+
+    /// footprint_map's matches; none of texels, which several tokens may show.
+    std::shared_ptr<token_matches const> matches(frame_index from, frame_index to) const {
+        auto const* const map = std::get_if<footprints>(&map_);
+        return map != nullptr ? map->matches(from, to) : nullptr;
     }
 
     /// Texels may be shown by several tokens, footprints by one.

@@ -27,7 +27,7 @@ concept attention_projections = requires(Projections const& module, strided_view
 };
 
 /// A model of attention_call over views: `f` is read where the engine keeps it, results are new memory that the handle
-/// owns. Frames run through `Loop`.
+/// owns. Frames run through `Loop`. Features can be kept in 16 bits (storing_attention_call).
 template <class Real, attention_projections<Real> Projections, parallel_loop Loop = sequential_loop>
 class host_attention_call {
 public:
@@ -66,7 +66,7 @@ public:
             std::vector<key_value_view<Real>> blocks;
             blocks.reserve(sources[i].size());
             for (auto const& block : sources[i]) {
-                blocks.push_back({block.K->view()[block.frame], block.V->view()[block.frame]});
+                blocks.push_back({rows_of(*block.K, block.frame), rows_of(*block.V, block.frame)});
             }
             scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads());
         });
@@ -77,14 +77,26 @@ public:
     features_type mix(features_type const& F_hat, features_type const& F_KF, std::span<sparse_rows<Real> const> rows,
                       Real alpha) const {
         require_extents("host_attention_call::mix", "rows", std::array{rows.size()}, std::array{F_hat.extents()[0]});
-        (*loop_)(rows.size(), [&](std::size_t i) { post_attention(F_hat.view()[i], F_KF.view(), rows[i], alpha); });
+        (*loop_)(rows.size(), [&](std::size_t i) {
+            F_KF.visit([&](auto const& kept) { post_attention(F_hat.view()[i], kept, rows[i], alpha); });
+        });
         return F_hat;
+    }
+
+    /// x kept in a format, as storing_attention_call has it.
+    features_type stored(features_type const& x, feature_storage storage) const {
+        return storage == feature_storage::same ? x : features_type::rounded(x.view(), storage);
     }
 
 private:
     static Loop const& default_loop() {
         static Loop const loop{};
         return loop;
+    }
+
+    /// One frame's rows, as they are kept.
+    static stored_view<Real> rows_of(features_type const& features, std::size_t frame) {
+        return features.visit([frame](auto const& kept) { return stored_view<Real>(kept[frame]); });
     }
 
     template <class Projection>

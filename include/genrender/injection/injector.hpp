@@ -67,6 +67,9 @@ public:
         return call.mix(F_hat, *kept->F_KF, rows, settings_.alpha(call.place().site));
     }
 
+    /// Where the bank holds nothing.
+    bool is_plain_at(attention_place place) const { return bank_->find(place) == nullptr; }
+
     /// f_KF that frames join to their own features at a place (eq. 5); null where nothing is injected. For engines
     /// whose graph is static. Throws value_error if the keyframe pass ran with callbacks, which keep K_KF and V_KF
     /// instead.

@@ -23,4 +23,16 @@ void post_attention(strided_view<Real, 2> F_hat, in_view<Real, 3> F_KF,
     mix_rows(F_hat, F_KF, rows, alpha);
 }
 
+/// The same with F_KF kept in 16 bits.
+template <class Real, class Stored>
+    requires half_storage<std::remove_const_t<Stored>>
+void post_attention(strided_view<Real, 2> F_hat, strided_view<Stored, 3> F_KF,
+                    sparse_rows<std::type_identity_t<Real>> const& rows, std::type_identity_t<Real> alpha) {
+    require_value(std::isfinite(alpha), "post_attention", "alpha", alpha, "a finite number");
+    if (alpha == 0) {
+        return;
+    }
+    mix_rows(F_hat, F_KF, rows, alpha);
+}
+
 } // namespace genrender

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/attention/extended_attention.hpp>
+#include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
 
@@ -20,25 +21,30 @@ template <class Features>
 class recorder {
 public:
     /// Records into `bank`, which must outlive the recorder. With `extended` keyframes attend to each other (eq. 3),
-    /// else each to itself (the ablation without pre-attention injection).
-    recorder(feature_bank<Features>& bank, place_filter takes_part, bool extended = true)
-        : bank_(&bank), takes_part_(std::move(takes_part)), extended_(extended) {}
+    /// else each to itself (the ablation without pre-attention injection). Features are kept in the format of
+    /// `storage`; keyframes attend to each other before they are rounded to it.
+    recorder(feature_bank<Features>& bank, place_filter takes_part, bool extended = true,
+             feature_storage storage = feature_storage::same)
+        : bank_(&bank), takes_part_(std::move(takes_part)), extended_(extended), storage_(storage) {}
 
-    /// F of eq. 1 over the sources of eq. 3; keeps K_KF, V_KF and F_KF of the place.
+    /// F of eq. 1 over the sources of eq. 3; keeps K_KF, V_KF and F_KF of the place. Throws value_error if the call
+    /// cannot store features in the format asked for.
     template <attention_call Call>
     Features operator()(Call& call) const {
         auto const f = call.f();
         auto const frames = call.frames().size();
         auto const is_recorded = takes_part_(call.place());
-        keyframe_features<Features> kept;
         auto const Q = call.query(f);
-        kept.K_KF = call.key(f);
-        kept.V_KF = call.value(f);
-        auto const sources = is_recorded && extended_ ? extended_attention_sources(*kept.K_KF, *kept.V_KF, frames)
-                                                      : own_attention_sources(*kept.K_KF, *kept.V_KF, frames);
+        Features const K = call.key(f);
+        Features const V = call.value(f);
+        auto const sources =
+            is_recorded && extended_ ? extended_attention_sources(K, V, frames) : own_attention_sources(K, V, frames);
         Features F = call.attend(Q, sources);
         if (is_recorded) {
-            kept.F_KF = F;
+            keyframe_features<Features> kept;
+            kept.K_KF = stored_features(call, K, storage_);
+            kept.V_KF = stored_features(call, V, storage_);
+            kept.F_KF = stored_features(call, F, storage_);
             bank_->put(call.place(), std::move(kept));
         }
         return F;
@@ -46,6 +52,9 @@ public:
 
     /// Whether features of a place are kept.
     bool records(attention_place place) const { return takes_part_(place); }
+
+    /// Where nothing is kept.
+    bool is_plain_at(attention_place place) const { return !takes_part_(place); }
 
     /// Whether frames of the stack attend to each other at a place; asked by engines whose graph is static.
     bool attends_to_stack(attention_place place) const { return extended_ && takes_part_(place); }
@@ -64,6 +73,7 @@ private:
     feature_bank<Features>* bank_;
     place_filter takes_part_;
     bool extended_;
+    feature_storage storage_;
 };
 
 } // namespace genrender

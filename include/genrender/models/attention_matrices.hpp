@@ -2,6 +2,8 @@
 // The matrices of an attention module: queries of the features, keys and values of what they attend to, the way out.
 #pragma once
 
+#include <genrender/core/parallel.hpp>
+#include <genrender/core/strided_view.hpp>
 #include <genrender/models/linear.hpp>
 
 #include <cstddef>
@@ -31,8 +33,11 @@ public:
     void key(strided_view<Real, 2> K, in_view<Real, 2> f) const { to_k_(K, f); }
     /// V = W^V f [tokens, channels] for f [tokens, source_channels].
     void value(strided_view<Real, 2> V, in_view<Real, 2> f) const { to_v_(V, f); }
-    /// Adds W^O F + b to the residual `h` [tokens, channels].
-    void add_output(strided_view<Real, 2> h, in_view<Real, 2> F) const { to_out_.add_to(h, F); }
+    /// Adds W^O F + b to the residual `h` [tokens, channels]. Tokens are shared out over `loop`.
+    template <parallel_loop Loop = sequential_loop>
+    void add_output(strided_view<Real, 2> h, in_view<Real, 2> F, Loop const& loop = Loop()) const {
+        to_out_.add_to(h, F, loop);
+    }
 
 private:
     std::size_t heads_;

@@ -91,9 +91,10 @@ private:
     static void project(Pass const& pass, feature_maps<Real>& maps, conv2d<Real> const& conv, Real scale) {
         auto result = pass.maps(maps.grid(), maps.channels());
         pass.each_frame([&](std::size_t i) {
-            stack<Real, 2> out(maps[i].extents());
-            conv(out.view(), maps[i], maps.grid());
-            add_scaled(result[i], out, scale);
+            conv(result[i], maps[i], maps.grid(), pass.tokens());
+            if (scale != 1) {
+                scale_by(result[i], scale);
+            }
         });
         maps = std::move(result);
     }

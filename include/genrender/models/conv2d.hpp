@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Convolution with 3x3 or 1x1 kernels as matrix products of gathered neighbourhoods.
+// Convolution with 3x3 or 1x1 kernels as one matrix product over neighbourhoods that are read where they lie.
 #pragma once
 
 #include <genrender/core/index.hpp>
-#include <genrender/core/linalg.hpp>
+#include <genrender/core/parallel.hpp>
+#include <genrender/core/strided_view.hpp>
+#include <genrender/models/padded_map.hpp>
+#include <genrender/models/weight_panels.hpp>
 #include <genrender/models/weights.hpp>
 
-#include <algorithm>
+#include <array>
+#include <cassert>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,22 +29,18 @@ public:
         : in_(in), kernel_(kernel), stride_(stride) {
         // Asked for before there is memory for it, so that a wrong config is told by name.
         auto const values = source.take(name + ".weight", {out, in, kernel, kernel});
-        // Turn [out, in, tap] into [tap, in, out], which fits neighbourhoods gathered a whole token at a time.
+        // Turn [out, in, tap] into [tap, in, out]: the channels of a token lie side by side.
         auto const taps = kernel * kernel;
-        weight_.resize(static_cast<Eigen::Index>(taps * in), static_cast<Eigen::Index>(out));
-        for (std::size_t o = 0; o < out; ++o) {
-            for (std::size_t i = 0; i < in; ++i) {
-                for (std::size_t tap = 0; tap < taps; ++tap) {
-                    weight_(static_cast<Eigen::Index>(tap * in + i), static_cast<Eigen::Index>(o)) =
-                        values[(o * in + i) * taps + tap];
-                }
-            }
-        }
+        weights_ = weight_panels<Real>(taps * in, out, [&](std::size_t input, std::size_t o) {
+            return values[(o * in + input % in) * taps + input / in];
+        });
         bias_ = source.take(name + ".bias", {out});
     }
 
     std::size_t in_channels() const { return in_; }
     std::size_t out_channels() const { return bias_.size(); }
+    /// Of each output channel.
+    std::span<Real const> bias() const { return bias_; }
 
     /// The grid that comes out of one that goes in.
     grid_extents out_grid(grid_extents grid) const {
@@ -48,59 +49,44 @@ public:
     }
 
     /// Writes the result [tokens of out_grid(grid), out] for `in` [tokens of grid, in]; rows of both contiguous, memory
-    /// of its own for each. Throws shape_error if they do not fit.
-    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, grid_extents grid) const {
-        auto const to_grid = out_grid(grid);
+    /// of its own for each. Tokens are shared out over `loop`. Throws shape_error if they do not fit.
+    template <parallel_loop Loop = sequential_loop>
+    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, grid_extents grid,
+                    Loop const& loop = Loop()) const {
         require_shape("conv2d", "in", in, {grid.size(), in_});
+        if (kernel_ > 1) {
+            (*this)(out, padded_map<Real>(in, grid), {bias_}, loop);
+            return;
+        }
+        auto const to_grid = out_grid(grid);
         require_shape("conv2d", "out", out, {to_grid.size(), out_channels()});
-        if (kernel_ == 1 && stride_ == 1) {
-            to_matrix(out).noalias() = to_matrix(in) * weight_;
-        } else {
-            // A tile at a time: the gathered neighbourhoods of a tile fit the cache, those of a map do not.
-            auto const tile = std::max<std::size_t>(1, 65536 / static_cast<std::size_t>(weight_.rows()));
-            matrix<Real> neighbourhoods(static_cast<Eigen::Index>(std::min(tile, to_grid.size())), weight_.rows());
-            for (std::size_t begin = 0; begin < to_grid.size(); begin += tile) {
-                auto const count = std::min(tile, to_grid.size() - begin);
-                for (std::size_t i = 0; i < count; ++i) {
-                    auto const token = begin + i;
-                    gather(neighbourhoods.row(static_cast<Eigen::Index>(i)).data(), in, grid,
-                           {static_cast<std::uint32_t>(token / to_grid.width),
-                            static_cast<std::uint32_t>(token % to_grid.width)});
-                }
-                to_matrix(out.slice(begin, count)).noalias() =
-                    neighbourhoods.topRows(static_cast<Eigen::Index>(count)) * weight_;
-            }
-        }
-        for (std::size_t token = 0; token < out.extent(0); ++token) {
-            auto const row = out[token].row();
-            for (std::size_t c = 0; c < row.size(); ++c) {
-                row[c] += bias_[c];
-            }
-        }
+        auto const token = static_cast<std::ptrdiff_t>(stride_) * in.stride(0);
+        weights_.multiply(out,
+                          {in.data(), to_grid.width, token, static_cast<std::ptrdiff_t>(grid.width) * token, 1, in_, 0},
+                          {bias_}, loop);
+    }
+
+    /// Writes the result of a 3x3 kernel for a map that lies in its ring already. `terms` are all that is added to the
+    /// products: bias() or what stands for it, and a residual. Throws shape_error if they do not fit.
+    template <parallel_loop Loop = sequential_loop>
+    void operator()(strided_view<Real, 2> out, padded_map<Real> const& in, product_terms<Real> const& terms,
+                    Loop const& loop = Loop()) const {
+        assert(kernel_ == 3 && "conv2d: a padded map is for kernels of 3");
+        auto const to_grid = out_grid(in.grid());
+        require_extents("conv2d", "channels of in", std::array{in.channels()}, std::array{in_});
+        require_shape("conv2d", "out", out, {to_grid.size(), out_channels()});
+        auto const row = static_cast<std::ptrdiff_t>(in.row_stride());
+        weights_.multiply(out,
+                          {in.corner(), to_grid.width, static_cast<std::ptrdiff_t>(stride_ * in_),
+                           static_cast<std::ptrdiff_t>(stride_) * row, 3, 3 * in_, row},
+                          terms, loop);
     }
 
 private:
-    /// Writes the inputs of all taps of one output pixel side by side.
-    void gather(Real* to, in_view<Real, 2> in, grid_extents grid, pixel at) const {
-        auto const radius = kernel_ / 2;
-        for (std::size_t tap_row = 0; tap_row < kernel_; ++tap_row) {
-            for (std::size_t tap_column = 0; tap_column < kernel_; ++tap_column, to += in_) {
-                // Unsigned numbers wrap above every extent where the tap lies left of or above the map.
-                auto const row = at.row * stride_ + tap_row - radius;
-                auto const column = at.column * stride_ + tap_column - radius;
-                if (row < grid.height && column < grid.width) {
-                    std::copy_n(in[row * grid.width + column].data(), in_, to);
-                } else {
-                    std::fill_n(to, in_, Real(0));
-                }
-            }
-        }
-    }
-
     std::size_t in_;
     std::size_t kernel_;
     std::size_t stride_;
-    matrix<Real> weight_;
+    weight_panels<Real> weights_;
     std::vector<Real> bias_;
 };
 

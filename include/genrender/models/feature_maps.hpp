@@ -3,9 +3,11 @@
 #pragma once
 
 #include <genrender/core/index.hpp>
-#include <genrender/core/stack.hpp>
+#include <genrender/core/strided_view.hpp>
+#include <genrender/models/feature_memory.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <type_traits>
 
@@ -17,19 +19,19 @@ class feature_maps {
 public:
     feature_maps() = default;
 
-    /// Zeros.
+    /// Numbers that nobody has set.
     feature_maps(std::size_t frames, grid_extents grid, std::size_t channels)
-        : grid_(grid), values_({frames, grid.size(), channels}) {}
+        : grid_(grid), extents_{frames, grid.size(), channels}, values_(frames * grid.size() * channels) {}
 
     grid_extents grid() const { return grid_; }
-    std::size_t frames() const { return values_.extent(0); }
-    std::size_t channels() const { return values_.extent(2); }
+    std::size_t frames() const { return extents_[0]; }
+    std::size_t channels() const { return extents_[2]; }
 
-    strided_view<Real, 3> view() { return values_.view(); }
-    strided_view<Real const, 3> view() const { return values_.view(); }
+    strided_view<Real, 3> view() { return {values_.data(), extents_}; }
+    strided_view<Real const, 3> view() const { return {values_.data(), extents_}; }
     /// Features of entry i of the stack [tokens, channels].
-    strided_view<Real, 2> operator[](std::size_t i) { return values_.view()[i]; }
-    strided_view<Real const, 2> operator[](std::size_t i) const { return values_.view()[i]; }
+    strided_view<Real, 2> operator[](std::size_t i) { return view()[i]; }
+    strided_view<Real const, 2> operator[](std::size_t i) const { return view()[i]; }
 
     /// The same memory as the engine's outside writes it [frames, channels, height, width]; copies nothing.
     strided_view<Real, 4> channels_first() {
@@ -42,7 +44,8 @@ public:
 
 private:
     grid_extents grid_;
-    stack<Real, 3> values_;
+    std::array<std::size_t, 3> extents_{};
+    feature_memory<Real> values_;
 };
 
 /// Adds scale * `from` to `to`, both [tokens, channels] with contiguous rows. Throws shape_error if they differ.
@@ -54,6 +57,16 @@ void add_scaled(strided_view<Real, 2> to, in_view<Real, 2> from, std::type_ident
         auto const in = from[token].row();
         for (std::size_t c = 0; c < out.size(); ++c) {
             out[c] += scale * in[c];
+        }
+    }
+}
+
+/// Multiplies `maps` [tokens, channels], whose rows are contiguous, by `factor`.
+template <class Real>
+void scale_by(strided_view<Real, 2> maps, std::type_identity_t<Real> factor) {
+    for (std::size_t token = 0; token < maps.extent(0); ++token) {
+        for (auto& value : maps[token].row()) {
+            value *= factor;
         }
     }
 }

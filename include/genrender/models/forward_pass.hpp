@@ -14,6 +14,21 @@
 
 namespace genrender {
 
+/// The loop inside a frame: shares out a layer's tokens and channels where there are no frames to share out.
+template <parallel_loop Loop>
+struct token_loop {
+    Loop const* loop = nullptr; ///< none: on the caller's thread
+
+    template <class Body>
+    void operator()(std::size_t count, Body&& body) const {
+        if (loop != nullptr && count > 1) {
+            (*loop)(count, body);
+        } else {
+            sequential_loop{}(count, body);
+        }
+    }
+};
+
 /// One run of one network for one guidance branch. All frames pass a layer before any enters the next, because a
 /// processor may let frames attend to each other [GR eq. 3].
 template <class Real, class Processor, parallel_loop Loop>
@@ -32,10 +47,17 @@ struct forward_pass {
     /// Calls `body(i)` for every entry of the stack.
     template <class Body>
     void each_frame(Body&& body) const {
-        (*loop)(frames.size(), body);
+        if (frames.size() == 1) {
+            body(std::size_t{0}); // The threads are those of tokens() then.
+        } else {
+            (*loop)(frames.size(), body);
+        }
     }
 
-    /// Zeros for a result of all frames.
+    /// The loop for the layers inside `body`.
+    token_loop<Loop> tokens() const { return {frames.size() == 1 ? loop : nullptr}; }
+
+    /// Memory for a result of all frames, not yet set.
     feature_maps<Real> maps(grid_extents grid, std::size_t channels) const { return {frames.size(), grid, channels}; }
 };
 

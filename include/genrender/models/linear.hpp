@@ -2,10 +2,11 @@
 // The fully connected layer: out = in W^T + b.
 #pragma once
 
-#include <genrender/core/linalg.hpp>
+#include <genrender/core/parallel.hpp>
+#include <genrender/core/strided_view.hpp>
+#include <genrender/models/weight_panels.hpp>
 #include <genrender/models/weights.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -25,53 +26,44 @@ public:
         return {source, name, {out, in, 1, 1}, true};
     }
 
-    std::size_t in_channels() const { return static_cast<std::size_t>(weight_.cols()); }
-    std::size_t out_channels() const { return static_cast<std::size_t>(weight_.rows()); }
+    std::size_t in_channels() const { return weights_.inputs(); }
+    std::size_t out_channels() const { return weights_.outputs(); }
 
-    /// Writes in W^T + b [tokens, out] for `in` [tokens, in]; rows of both contiguous. Throws shape_error if they do
-    /// not fit.
-    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in) const {
-        require_fit(out, in);
-        to_matrix(out).noalias() = to_matrix(in) * weight_.transpose();
-        add_bias(out);
+    /// Writes in W^T + b [tokens, out] for `in` [tokens, in]; rows of both contiguous. Tokens are shared out over
+    /// `loop`. Throws shape_error if they do not fit.
+    template <parallel_loop Loop = sequential_loop>
+    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, Loop const& loop = Loop()) const {
+        multiply(out, in, {bias_}, loop);
     }
 
     /// Adds in W^T + b to `out`: the last layer of a residual branch.
-    void add_to(strided_view<Real, 2> out, in_view<Real, 2> in) const {
-        require_fit(out, in);
-        to_matrix(out).noalias() += to_matrix(in) * weight_.transpose();
-        add_bias(out);
+    template <parallel_loop Loop = sequential_loop>
+    void add_to(strided_view<Real, 2> out, in_view<Real, 2> in, Loop const& loop = Loop()) const {
+        multiply(out, in, {bias_, out}, loop);
     }
 
 private:
     linear(weights<Real>& source, std::string const& name, std::vector<std::size_t> const& shape, bool has_bias) {
         // Asked for before there is memory for it, so that a wrong config is told by name.
         auto const values = source.take(name + ".weight", shape);
-        weight_.resize(static_cast<Eigen::Index>(shape[0]), static_cast<Eigen::Index>(shape[1]));
-        std::copy(values.begin(), values.end(), weight_.data());
+        weights_ = weight_panels<Real>(shape[1], shape[0], [&](std::size_t input, std::size_t output) {
+            return values[output * shape[1] + input];
+        });
         if (has_bias) {
             bias_ = source.take(name + ".bias", {shape[0]});
         }
     }
 
-    void require_fit(strided_view<Real, 2> out, in_view<Real, 2> in) const {
-        require_shape("linear", "in", in, {in.extent(0), in_channels()});
-        require_shape("linear", "out", out, {in.extent(0), out_channels()});
+    template <class Loop>
+    void multiply(strided_view<Real, 2> out, in_view<Real, 2> in, product_terms<Real> const& terms,
+                  Loop const& loop) const {
+        auto const tokens = in.extent(0);
+        require_shape("linear", "in", in, {tokens, in_channels()});
+        require_shape("linear", "out", out, {tokens, out_channels()});
+        weights_.multiply(out, token_inputs<Real>::rows_of(in), terms, loop);
     }
 
-    void add_bias(strided_view<Real, 2> out) const {
-        if (bias_.empty()) {
-            return;
-        }
-        for (std::size_t token = 0; token < out.extent(0); ++token) {
-            auto const row = out[token].row();
-            for (std::size_t c = 0; c < row.size(); ++c) {
-                row[c] += bias_[c];
-            }
-        }
-    }
-
-    matrix<Real> weight_;
+    weight_panels<Real> weights_;
     std::vector<Real> bias_;
 };
 

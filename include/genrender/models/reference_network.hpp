@@ -2,8 +2,12 @@
 // [GR sec. 3.1] Stable Diffusion in miniature: a UNet and a depth ControlNet on the CPU, a model of denoiser.
 #pragma once
 
+#include <genrender/attention/attention_processor.hpp>
 #include <genrender/core/parallel.hpp>
+#include <genrender/keyframes/stoppable_denoiser.hpp>
 #include <genrender/models/controlnet.hpp>
+#include <genrender/models/embedded_hints.hpp>
+#include <genrender/models/encoded_frames.hpp>
 #include <genrender/models/network_conditioning.hpp>
 #include <genrender/models/reference_weights.hpp>
 #include <genrender/models/unet.hpp>
@@ -18,6 +22,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,21 +31,49 @@
 
 namespace genrender {
 
+namespace detail {
+
+/// Ends a run of a network behind its last wanted site.
+struct last_site_has_run {};
+
+/// A processor that throws last_site_has_run after it ran at `last`. No layer needs to know that runs may end early.
+template <class Processor>
+struct stopping_processor {
+    Processor* processor;
+    site_index last;
+
+    template <attention_call Call>
+    typename Call::features_type operator()(Call& call) const {
+        auto F = (*processor)(call);
+        if (call.place().site == last) {
+            throw last_site_has_run{};
+        }
+        return F;
+    }
+};
+
+} // namespace detail
+
 /// A UNet with classifier-free guidance and a ControlNet, conditioned for one animation. Its sites are the ControlNet's
 /// self-attention modules (network_kind::control) and then the UNet's, as they run. Features lie in host memory; frames
 /// run through `Loop`. Copies share the weights. Runs change nothing, so several threads may run one network at once.
+/// It can end a call early and lends what the decoder starts from (stoppable_denoiser, residual_lender).
 template <std::floating_point Real, parallel_loop Loop = sequential_loop>
 class reference_network {
 public:
     using real_type = Real;
     using features_type = host_features<Real>;
+    using residuals_type = encoded_frames<Real>;
 
     /// Takes the weights of both networks (those of Stable Diffusion 1.5 and its ControlNet in diffusers' layout fit,
     /// as do weights<Real>::seeded). Throws value_error if the config cannot be built, the latents' grid cannot be
     /// halved as often as the network does, or there is no frame; shape_error if the conditioning does not fit the
-    /// config; file_error naming a tensor that is missing, misshapen or left over.
+    /// config; file_error naming a tensor that is missing, misshapen or left over. Embedded hints are kept of as many
+    /// frames as fit into `hint_bytes`, so that memory does not grow with the animation; others are embedded anew in
+    /// each call, with the same result.
     reference_network(unet_config config, weights<Real>& unet_weights, weights<Real>& control_weights,
-                      network_conditioning<Real> conditioning, Loop loop = Loop())
+                      network_conditioning<Real> conditioning, Loop loop = Loop(),
+                      std::size_t hint_bytes = std::size_t{1} << 26)
         : config_((require_config(config), std::move(config))), conditioning_(std::move(conditioning)),
           loop_(std::move(loop)),
           schedule_(scaled_linear_alphas_cumprod(config_.beta_start, config_.beta_end, config_.num_train_timesteps)) {
@@ -51,7 +84,7 @@ public:
         sites.begin(network_kind::denoiser);
         unet_ = std::make_shared<unet<Real> const>(config_, unet_weights, sites);
         sites_.assign(sites.sites().begin(), sites.sites().end());
-        embed_hints();
+        hints_ = {control_, std::exchange(conditioning_.hint, {}), hint_bytes, loop_};
     }
 
     /// The network of all its weights.
@@ -94,28 +127,66 @@ public:
     template <class Processor>
     void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
                     std::span<frame_index const> frames, Processor& processor) const {
-        auto const function = "reference_network";
-        require_shape(function, "z", z, {frames.size(), config_.in_channels, latent_grid_.height, latent_grid_.width});
-        require_shape(function, "x0", x0,
-                      {frames.size(), config_.out_channels, latent_grid_.height, latent_grid_.width});
-        std::vector<feature_maps<Real> const*> hints;
-        for (auto const frame : frames) {
-            require_value(frame.value < hints_.size(), function, "frames", frame.value,
-                          ("below " + std::to_string(hints_.size())).c_str());
-            hints.push_back(&hints_[frame.value]);
-        }
-        auto const c_in = scalings_of(config_.prediction_type, sigma).c_in;
-        feature_maps<Real> in(frames.size(), latent_grid_, config_.in_channels);
-        loop_(frames.size(), [&](std::size_t i) { copy_scaled(in.channels_first()[i], z[i], c_in); });
+        (*this)(x0, z, sigma, frames, processor, residuals_type{});
+    }
 
-        auto F = run(0, branches() == 1 ? conditioning_.prompt : conditioning_.empty_prompt, in, sigma, frames, hints,
-                     processor);
+    /// The same to the bit, in less time for frames whose way down `lent` holds.
+    template <class Processor>
+    void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
+                    std::span<frame_index const> frames, Processor& processor, residuals_type const& lent) const {
+        require_shape("reference_network", "x0", x0,
+                      {frames.size(), config_.out_channels, latent_grid_.height, latent_grid_.width});
+        auto in = frames_of(z, sigma, frames);
+        auto const run = [&](std::uint32_t branch) {
+            auto pass = pass_of(branch, in, processor);
+            auto known = is_plain_before_decoder(processor, branch)
+                             ? lent.find(branch, frames, z, sigma)
+                             : std::optional<typename residuals_type::of_branch>{};
+            if (!known) {
+                return unet_->decode(pass, encode(pass, in));
+            }
+            pass.time = std::move(known->time);
+            return unet_->decode(pass, std::move(known->maps));
+        };
+        auto F = run(0);
         if (branches() == 2) {
-            auto F_cond = run(1, conditioning_.prompt, in, sigma, frames, hints, processor);
+            auto F_cond = run(1);
             guide(F.channels_first(), F.channels_first(), F_cond.channels_first(), conditioning_.guidance_scale);
         }
         to_clean(x0, config_.prediction_type, z, F.channels_first(), sigma);
     }
+
+    /// Runs the processor as a call does, in each branch up to its last site and no further; a branch without one does
+    /// not run. If `lent` is not null it becomes what the decoder starts from, of the branches in which the processor is
+    /// plain before. Throws as a call does, shape_error unless `last` has one entry a branch.
+    template <class Processor>
+    void run_until(strided_view<Real const, 4> z, Real sigma, std::span<frame_index const> frames, Processor& processor,
+                   std::span<std::optional<site_index> const> last, residuals_type* lent = nullptr) const {
+        require_extents("reference_network", "last", std::array{last.size()}, std::array{branches()});
+        auto in = frames_of(z, sigma, frames);
+        if (lent != nullptr) {
+            *lent = residuals_type(frames, z, sigma, branches());
+        }
+        for (std::uint32_t branch = 0; branch < branches(); ++branch) {
+            if (!last[branch]) {
+                continue;
+            }
+            detail::stopping_processor<Processor> const stopping{&processor, *last[branch]};
+            auto pass = pass_of(branch, in, stopping);
+            try {
+                auto encoded = encode(pass, in);
+                if (lent != nullptr && is_plain_before_decoder(processor, branch)) {
+                    lent->put(branch, {encoded, pass.time});
+                }
+                unet_->decode(pass, std::move(encoded));
+            } catch (detail::last_site_has_run const&) {
+                // As asked.
+            }
+        }
+    }
+
+    /// Bytes that run_until lends of one frame.
+    std::size_t residual_bytes() const { return branches() * encoded_bytes<Real>(config_, latent_grid_); }
 
 private:
     void require_conditioning() {
@@ -144,16 +215,26 @@ private:
                         std::array{tokens.extent(0), config_.cross_attention_dim});
     }
 
-    /// The embedding of a hint depends on its frame alone, so it is made once and not once a step.
-    void embed_hints() {
-        auto const& hint = conditioning_.hint;
-        hints_.resize(hint.extent(0));
-        loop_(hints_.size(), [&](std::size_t i) {
-            feature_maps<Real> pixels(1, {hint.extent(2), hint.extent(3)}, hint.extent(1));
-            copy(pixels.channels_first()[0], hint.view()[i]);
-            hints_[i] = control_->embed(pixels);
-        });
-        conditioning_.hint = {};
+    /// The frames of a call as both branches take them.
+    struct stack_of_frames {
+        std::span<frame_index const> frames;
+        feature_maps<Real> scaled; ///< c_in z
+        Real t;                    ///< time of the training
+        std::optional<typename embedded_hints<Real>::of_call>
+            hints{}; ///< looked up by the first branch that needs them
+    };
+
+    stack_of_frames frames_of(strided_view<Real const, 4> z, Real sigma, std::span<frame_index const> frames) const {
+        auto const function = "reference_network";
+        require_shape(function, "z", z, {frames.size(), config_.in_channels, latent_grid_.height, latent_grid_.width});
+        for (auto const frame : frames) {
+            require_value(frame.value < hints_.frame_count(), function, "frames", frame.value,
+                          ("below " + std::to_string(hints_.frame_count())).c_str());
+        }
+        auto const c_in = scalings_of(config_.prediction_type, sigma).c_in;
+        feature_maps<Real> scaled(frames.size(), latent_grid_, config_.in_channels);
+        loop_(frames.size(), [&](std::size_t i) { copy_scaled(scaled.channels_first()[i], z[i], c_in); });
+        return {frames, std::move(scaled), time_of(sigma)};
     }
 
     static void copy_scaled(strided_view<Real, 3> to, strided_view<Real const, 3> from, Real factor) {
@@ -171,15 +252,35 @@ private:
         return config_.prediction_type == prediction::flow ? 1000 * flow_time_of(sigma) : schedule_.t_of(sigma);
     }
 
-    /// The UNet's output for one guidance branch.
     template <class Processor>
-    feature_maps<Real> run(std::uint32_t branch, stack<Real, 2> const& prompt, feature_maps<Real> const& in, Real sigma,
-                           std::span<frame_index const> frames, std::vector<feature_maps<Real> const*> const& hints,
-                           Processor& processor) const {
-        forward_pass<Real, Processor, Loop> pass{frames, branch, prompt.view(), &processor, &loop_};
-        auto const t = time_of(sigma);
-        auto const control = (*control_)(pass, in, t, hints, conditioning_.conditioning_scale);
-        return (*unet_)(pass, in, t, &control);
+    forward_pass<Real, Processor, Loop> pass_of(std::uint32_t branch, stack_of_frames const& in,
+                                                Processor& processor) const {
+        auto const is_empty = branch == 0 && branches() == 2;
+        auto const& prompt = is_empty ? conditioning_.empty_prompt : conditioning_.prompt;
+        return {in.frames, branch, prompt.view(), &processor, &loop_};
+    }
+
+    /// The way down of both networks.
+    template <class Pass>
+    encoded_maps<Real> encode(Pass& pass, stack_of_frames& in) const {
+        if (!in.hints) {
+            in.hints = hints_.at(in.frames, loop_);
+        }
+        auto const control = (*control_)(pass, in.scaled, in.t, in.hints->hints, conditioning_.conditioning_scale);
+        return unet_->encode(pass, in.scaled, in.t, &control);
+    }
+
+    /// Whether a processor leaves everything before the decoder as it is.
+    template <class Processor>
+    bool is_plain_before_decoder(Processor const& processor, std::uint32_t branch) const {
+        for (std::uint32_t site = 0; site < sites_.size(); ++site) {
+            auto const is_before =
+                sites_[site].network == network_kind::control || sites_[site].part != network_part::decoder;
+            if (is_before && !is_plain_at(processor, {{site}, branch})) {
+                return false;
+            }
+        }
+        return true;
     }
 
     unet_config config_;
@@ -190,7 +291,7 @@ private:
     std::vector<attention_site> sites_;
     std::shared_ptr<controlnet<Real> const> control_;
     std::shared_ptr<unet<Real> const> unet_;
-    std::vector<feature_maps<Real>> hints_;
+    embedded_hints<Real> hints_;
 };
 
 } // namespace genrender

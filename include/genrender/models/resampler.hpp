@@ -2,26 +2,33 @@
 // The steps between levels of the UNet: a convolution of stride 2 down, nearest neighbours and a convolution up.
 #pragma once
 
-#include <genrender/core/stack.hpp>
+#include <genrender/core/strided_view.hpp>
 #include <genrender/models/conv2d.hpp>
 #include <genrender/models/feature_maps.hpp>
 #include <genrender/models/forward_pass.hpp>
+#include <genrender/models/padded_map.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 
 namespace genrender {
 
-/// Writes every token of `in` [tokens of grid, channels] into a square of 2 x 2 tokens of `out` [4 tokens, channels].
-/// Throws shape_error if they do not fit.
+/// Writes every token of `in` [tokens of grid, channels] into a square of 2 x 2 tokens of `out`, for a convolution.
+/// Throws shape_error unless `out` is twice as high and wide.
 template <class Real>
-void repeat_twice(strided_view<Real, 2> out, in_view<Real, 2> in, grid_extents grid) {
-    require_shape("repeat_twice", "in", in, {grid.size(), in.extent(1)});
-    require_shape("repeat_twice", "out", out, {4 * grid.size(), in.extent(1)});
-    for (std::size_t token = 0; token < out.extent(0); ++token) {
-        auto const row = token / (2 * grid.width);
-        auto const column = token % (2 * grid.width);
-        copy(out[token], in[row / 2 * grid.width + column / 2]);
+void repeat_twice(padded_map<Real>& out, in_view<Real, 2> in, grid_extents grid) {
+    require_shape("repeat_twice", "in", in, {grid.size(), out.channels()});
+    require_extents("repeat_twice", "grid of out", std::array{out.grid().height, out.grid().width},
+                    std::array{2 * grid.height, 2 * grid.width});
+    for (std::size_t y = 0; y < grid.height; ++y) {
+        auto* to = out.row(2 * y);
+        for (std::size_t x = 0; x < grid.width; ++x) {
+            auto const* const from = in[y * grid.width + x].data();
+            to = std::copy_n(from, out.channels(), std::copy_n(from, out.channels(), to));
+        }
+        std::copy(out.row(2 * y), to, out.row(2 * y + 1));
     }
 }
 
@@ -36,7 +43,7 @@ public:
     template <class Pass>
     feature_maps<Real> operator()(Pass const& pass, feature_maps<Real> const& x) const {
         auto result = pass.maps(conv_.out_grid(x.grid()), x.channels());
-        pass.each_frame([&](std::size_t i) { conv_(result[i], x[i], x.grid()); });
+        pass.each_frame([&](std::size_t i) { conv_(result[i], x[i], x.grid(), pass.tokens()); });
         return result;
     }
 
@@ -57,9 +64,9 @@ public:
         grid_extents const grid{2 * x.grid().height, 2 * x.grid().width};
         auto result = pass.maps(grid, x.channels());
         pass.each_frame([&](std::size_t i) {
-            stack<Real, 2> repeated({grid.size(), x.channels()});
-            repeat_twice(repeated.view(), x[i], x.grid());
-            conv_(result[i], repeated, grid);
+            padded_map<Real> repeated(grid, x.channels());
+            repeat_twice(repeated, x[i], x.grid());
+            conv_(result[i], repeated, {conv_.bias()}, pass.tokens());
         });
         return result;
     }

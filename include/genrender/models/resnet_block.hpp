@@ -2,15 +2,18 @@
 // The residual block of the UNet (diffusers' ResnetBlock2D): two convolutions, told of the time between them.
 #pragma once
 
-#include <genrender/models/activation.hpp>
 #include <genrender/models/conv2d.hpp>
 #include <genrender/models/feature_maps.hpp>
+#include <genrender/models/feature_memory.hpp>
 #include <genrender/models/forward_pass.hpp>
 #include <genrender/models/group_norm.hpp>
 #include <genrender/models/linear.hpp>
+#include <genrender/models/padded_map.hpp>
 #include <genrender/models/unet_config.hpp>
 
+#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,34 +45,33 @@ public:
     template <class Pass>
     feature_maps<Real> operator()(Pass const& pass, feature_maps<Real> const& x) const {
         auto result = pass.maps(x.grid(), out_channels());
-        std::vector<Real> time(out_channels());
-        time_emb_proj_(strided_view<Real, 2>(time.data(), {1, time.size()}),
+        // The same for all tokens: conv1's bias and what it is told of the time.
+        std::vector<Real> shift(out_channels());
+        time_emb_proj_(strided_view<Real, 2>(shift.data(), {1, shift.size()}),
                        strided_view<Real const, 2>(pass.time.data(), {1, pass.time.size()}));
-        pass.each_frame([&](std::size_t i) { run(result[i], x[i], x.grid(), time); });
+        std::transform(shift.begin(), shift.end(), conv1_.bias().begin(), shift.begin(), std::plus<Real>());
+        pass.each_frame([&](std::size_t i) { run(result[i], x[i], x.grid(), shift, pass.tokens()); });
         return result;
     }
 
 private:
-    void run(strided_view<Real, 2> out, in_view<Real, 2> x, grid_extents grid, std::span<Real const> time) const {
-        stack<Real, 2> normed(x.extents());
-        norm1_(normed.view(), x);
-        silu(std::span(normed.data(), normed.size()));
-        stack<Real, 2> hidden(out.extents());
-        conv1_(hidden.view(), normed, grid);
-        for (std::size_t token = 0; token < hidden.extent(0); ++token) {
-            auto const row = hidden.view()[token].row();
-            for (std::size_t c = 0; c < row.size(); ++c) {
-                row[c] += time[c];
-            }
+    template <class Loop>
+    void run(strided_view<Real, 2> out, in_view<Real, 2> x, grid_extents grid, std::span<Real const> shift,
+             Loop const& loop) const {
+        feature_memory<Real> memory(out.size());
+        strided_view<Real, 2> const hidden(memory.data(), out.extents());
+        {
+            padded_map<Real> normed(grid, x.extent(1));
+            norm1_.with_silu(normed, x, loop);
+            conv1_(hidden, normed, {shift, {}}, loop);
         }
-        norm2_(hidden.view(), hidden);
-        silu(std::span(hidden.data(), hidden.size()));
-        conv2_(out, hidden, grid);
+        padded_map<Real> normed(grid, out.extent(1));
+        norm2_.with_silu(normed, hidden, loop);
         if (conv_shortcut_) {
-            (*conv_shortcut_)(hidden.view(), x, grid);
-            add_scaled(out, hidden);
+            (*conv_shortcut_)(out, x, grid, loop);
+            conv2_(out, normed, {conv2_.bias(), out}, loop);
         } else {
-            add_scaled(out, x);
+            conv2_(out, normed, {conv2_.bias(), x}, loop);
         }
     }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/models/feature_maps.hpp>
+#include <genrender/models/feature_memory.hpp>
 #include <genrender/models/forward_pass.hpp>
 #include <genrender/models/group_norm.hpp>
 #include <genrender/models/linear.hpp>
@@ -35,14 +36,15 @@ public:
     void operator()(Pass const& pass, feature_maps<Real>& x) const {
         auto h = pass.maps(x.grid(), x.channels());
         pass.each_frame([&](std::size_t i) {
-            stack<Real, 2> normed(x[i].extents());
-            norm_(normed.view(), x[i]);
-            proj_in_(h[i], normed);
+            feature_memory<Real> memory(x[i].size());
+            strided_view<Real, 2> const normed(memory.data(), x[i].extents());
+            norm_(normed, x[i], pass.tokens());
+            proj_in_(h[i], normed, pass.tokens());
         });
         for (auto const& block : blocks_) {
             block(pass, h);
         }
-        pass.each_frame([&](std::size_t i) { proj_out_.add_to(x[i], h[i]); });
+        pass.each_frame([&](std::size_t i) { proj_out_.add_to(x[i], h[i], pass.tokens()); });
     }
 
 private:

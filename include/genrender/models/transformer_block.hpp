@@ -4,15 +4,19 @@
 
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
+#include <genrender/core/stack.hpp>
+#include <genrender/core/strided_view.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/models/attention_matrices.hpp>
 #include <genrender/models/feature_maps.hpp>
+#include <genrender/models/feature_memory.hpp>
 #include <genrender/models/feed_forward.hpp>
 #include <genrender/models/forward_pass.hpp>
 #include <genrender/models/layer_norm.hpp>
 #include <genrender/models/site_list.hpp>
 #include <genrender/models/unet_config.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -50,15 +54,22 @@ public:
         attn2_.value(V.view(), pass.prompt);
         std::array const prompt{key_value_view<Real>{K.view(), V.view()}};
         pass.each_frame([&](std::size_t i) {
-            stack<Real, 2> normed(h[i].extents());
-            stack<Real, 2> Q(h[i].extents());
-            norm2_(normed.view(), h[i]);
-            attn2_.query(Q.view(), normed);
-            scaled_dot_product(normed.view(), Q, prompt, attn2_.heads());
-            attn2_.add_output(h[i], normed);
+            // All that follows is a token's own affair, so tokens pass through all of it, some at a time.
+            auto const tokens = h[i].extent(0);
+            constexpr std::size_t block = 384;
+            pass.tokens()((tokens + block - 1) / block, [&](std::size_t b) {
+                auto const rows = h[i].slice(b * block, std::min(block, tokens - b * block));
+                feature_memory<Real> memory(2 * rows.size());
+                strided_view<Real, 2> const normed(memory.data(), rows.extents());
+                strided_view<Real, 2> const Q(memory.data() + rows.size(), rows.extents());
+                norm2_(normed, rows);
+                attn2_.query(Q, normed);
+                scaled_dot_product(normed, Q, prompt, attn2_.heads());
+                attn2_.add_output(rows, normed);
 
-            norm3_(normed.view(), h[i]);
-            ff_.add_to(h[i], normed);
+                norm3_(normed, rows);
+                ff_.add_to(rows, normed);
+            });
         });
     }
 
@@ -76,7 +87,7 @@ private:
         require_extents("transformer_block", "F", F.extents(), f.extents());
         pass.each_frame([&](std::size_t i) {
             stack<Real, 2> storage;
-            attn1_.add_output(h[i], detail::with_contiguous_rows<Real>(F.view()[i], storage));
+            attn1_.add_output(h[i], detail::with_contiguous_rows<Real>(F.view()[i], storage), pass.tokens());
         });
     }
 

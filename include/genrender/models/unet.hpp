@@ -2,15 +2,14 @@
 // The denoising UNet of Stable Diffusion (Rombach et al. 2022), layer for layer diffusers' UNet2DConditionModel.
 #pragma once
 
-#include <genrender/models/activation.hpp>
 #include <genrender/models/conv2d.hpp>
 #include <genrender/models/group_norm.hpp>
+#include <genrender/models/padded_map.hpp>
 #include <genrender/models/unet_encoder.hpp>
 
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,24 +90,38 @@ public:
     template <class Pass>
     feature_maps<Real> operator()(Pass& pass, feature_maps<Real> const& z, Real t,
                                   encoded_maps<Real> const* control = nullptr) const {
+        return decode(pass, encode(pass, z, t, control));
+    }
+
+    /// The first half of it: the way down and the mid block. Leaves the embedding of t in `pass.time`.
+    template <class Pass>
+    encoded_maps<Real> encode(Pass& pass, feature_maps<Real> const& z, Real t,
+                              encoded_maps<Real> const* control = nullptr) const {
         auto encoded = encoder_(pass, z, t);
-        auto& skips = encoded.skips;
-        auto h = std::move(encoded.middle);
         if (control != nullptr) {
+            auto& skips = encoded.skips;
             require_extents("unet", "control", std::array{control->skips.size()}, std::array{skips.size()});
             for (std::size_t s = 0; s < skips.size(); ++s) {
                 add(pass, skips[s], control->skips[s]);
             }
-            add(pass, h, control->middle);
+            add(pass, encoded.middle, control->middle);
         }
+        return encoded;
+    }
+
+    /// The second half: the way up, from what the first half gave, with its `pass.time`.
+    template <class Pass>
+    feature_maps<Real> decode(Pass const& pass, encoded_maps<Real> encoded) const {
+        auto& skips = encoded.skips;
+        auto h = std::move(encoded.middle);
         for (auto const& block : up_blocks_) {
             h = block(pass, std::move(h), skips);
         }
-        auto result = pass.maps(z.grid(), conv_out_.out_channels());
+        auto result = pass.maps(h.grid(), conv_out_.out_channels());
         pass.each_frame([&](std::size_t i) {
-            conv_norm_out_(h[i], h[i]);
-            silu(std::span(h[i].data(), h[i].size()));
-            conv_out_(result[i], h[i], z.grid());
+            padded_map<Real> normed(h.grid(), h.channels());
+            conv_norm_out_.with_silu(normed, std::as_const(h)[i], pass.tokens());
+            conv_out_(result[i], normed, {conv_out_.bias()}, pass.tokens());
         });
         return result;
     }

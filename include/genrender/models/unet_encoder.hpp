@@ -97,7 +97,7 @@ public:
         encoded_maps<Real> result;
         auto h = pass.maps(z.grid(), conv_in_.out_channels());
         pass.each_frame([&](std::size_t i) {
-            conv_in_(h[i], z[i], z.grid());
+            conv_in_(h[i], z[i], z.grid(), pass.tokens());
             if (!hint.empty()) {
                 add_scaled(h[i], (*hint[i])[0]);
             }

@@ -6,12 +6,15 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/noise/brownian_bridge.hpp>
+#include <genrender/noise/normal_lanes.hpp>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -54,8 +57,8 @@ public:
 
     /// The level whose cells are at least `side` > 0 wide, and less than twice that, as far as there are levels.
     static std::uint32_t level_of(double side) {
-        auto const level = std::floor(std::log2(2 * half_width / side));
-        return static_cast<std::uint32_t>(std::clamp(level, 0.0, double{deepest}));
+        auto const level = std::ilogb(2 * half_width / side);
+        return static_cast<std::uint32_t>(std::clamp(level, 0, static_cast<int>(deepest)));
     }
 
     /// Adds to `sums` [pixels, channels] what the requests see: sum over cells of sqrt(share) Y with independent Y of
@@ -74,12 +77,6 @@ private:
 
     static key key_of(std::array<std::uint32_t, 4> const& bits) { return {bits[0], bits[1]}; }
 
-    /// Values 4 * block ... 4 * block + 3 of N(0, 1) of a node and channel.
-    static std::array<double, 4> normals(key const& node, std::size_t block, std::size_t channel) {
-        return four_normals_of(
-            philox({static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(channel), 2, 0}, node));
-    }
-
     /// What looks at a whole cell, on its way down to where the cell is not divided further.
     struct look {
         std::uint32_t pixel;
@@ -90,24 +87,84 @@ private:
     class walk {
     public:
         walk(std::span<double> sums, std::size_t channels, std::span<noise_request<D>> requests)
-            : sums_(sums), channels_(channels), requests_(requests), scratch_(requests.begin(), requests.end()),
+            : sums_(sums), channels_(channels), requests_(requests),
+              scratch_(std::make_unique_for_overwrite<noise_request<D>[]>(requests.size())),
               values_((deepest + 2) * children * channels) {
             root_shares_.fill(1 / std::sqrt(static_cast<double>(children)));
         }
 
         void run(key const& root) {
+            draw(root, 0, 1);
             for (std::size_t c = 0; c < channels_; ++c) {
-                values_[c] = normals(root, 0, c)[0];
+                values_[c] = drawn_[4 * c];
             }
-            descend(requests_, scratch_, 0, root, values_.data());
+            descend(requests_, {scratch_.get(), requests_.size()}, 0, root, values_.data());
         }
 
     private:
+        /// Draws values 4 * block ... of N(0, 1) of a node, `blocks` times four a channel: drawn_ [channels, 4 * blocks].
+        void draw(key const& node, std::size_t block, std::size_t blocks) {
+            constexpr std::size_t at_once = 4;
+            auto const count = channels_ * blocks;
+            drawn_.resize((count + at_once - 1) / at_once * at_once * 4);
+            for (std::size_t first = 0; first < count; first += at_once) {
+                std::array<std::array<std::uint32_t, 4>, at_once> counters{};
+                for (std::size_t n = 0; n < at_once; ++n) {
+                    counters[n] = {static_cast<std::uint32_t>(block + (first + n) % blocks),
+                                   static_cast<std::uint32_t>((first + n) / blocks), 2, 0};
+                }
+                normals_of(counters, node, &drawn_[4 * first]);
+            }
+        }
+
+        /// Divides the node's values W [channels] among its children: the result is [children, channels].
+        double* divide_among_children(key const& node, std::uint32_t level, double const* W) {
+            draw(node, 0, children / 4);
+            auto* const values = &values_[(level + 1) * children * channels_];
+            for (std::size_t c = 0; c < channels_; ++c) {
+                auto const g = std::span(drawn_).subspan(c * children, children);
+                bridge(W[c], root_shares_, g);
+                for (std::size_t child = 0; child < children; ++child) {
+                    values[child * channels_ + c] = g[child];
+                }
+            }
+            return values;
+        }
+
+        static key child_key(key const& node, std::size_t child) {
+            return key_of(philox({static_cast<std::uint32_t>(child), 0, 1, 0}, node));
+        }
+
+        /// The first level on which not all requests look at one cell, or one of them stops.
+        static std::uint32_t parting_level(std::span<noise_request<D> const> requests) {
+            std::uint64_t different = 0;
+            auto lowest = deepest;
+            for (auto const& request : requests) {
+                for (std::size_t d = 0; d < D; ++d) {
+                    different |= request.place[d] ^ requests[0].place[d];
+                }
+                lowest = std::min(lowest, request.level);
+            }
+            return std::min(static_cast<std::uint32_t>(std::countl_zero(different)) - (64 - deepest), lowest);
+        }
+
         /// All `requests` lie in the node, whose values are W [channels]; `free` is as many requests of room.
         void descend(std::span<noise_request<D>> requests, std::span<noise_request<D>> free, std::uint32_t level,
-                     key const& node, double const* W) {
-            // Those who look at the whole cell look at each of its children alike, if it has to be divided.
+                     key node, double const* W) {
             auto const carried = looks_.size();
+            if (carried == 0) {
+                // Nobody looks at what lies beside the way to where the requests part.
+                for (auto const last = parting_level(requests); level < last; ++level) {
+                    auto const child = child_of(requests[0], level);
+                    W = divide_among_children(node, level, W) + child * channels_;
+                    node = child_key(node, child);
+                }
+                if (requests.size() == 1) {
+                    add_share(requests[0].pixel, requests[0].share, W);
+                    return;
+                }
+            }
+            // Those who look at the whole cell look at each of its children alike, if it has to be divided.
             auto const is_deeper = [level](auto const& request) { return request.level > level; };
             auto const here = std::partition(requests.begin(), requests.end(), is_deeper);
             for (auto request = here; request != requests.end(); ++request) {
@@ -131,18 +188,7 @@ private:
                 free[places[child_of(request, level)]++] = request;
             }
 
-            auto* const values = &values_[(level + 1) * children * channels_];
-            for (std::size_t c = 0; c < channels_; ++c) {
-                std::array<double, children> g{};
-                for (std::size_t block = 0; block < children / 4; ++block) {
-                    auto const drawn = normals(node, block, c);
-                    std::copy(drawn.begin(), drawn.end(), g.begin() + static_cast<std::ptrdiff_t>(4 * block));
-                }
-                bridge(W[c], root_shares_, g);
-                for (std::size_t child = 0; child < children; ++child) {
-                    values[child * channels_ + c] = g[child];
-                }
-            }
+            auto const* const values = divide_among_children(node, level, W);
             for (auto& look : looks_) {
                 look.share /= static_cast<double>(children);
             }
@@ -150,15 +196,21 @@ private:
             for (std::size_t child = 0; child < children; ++child) {
                 auto const count = ends[child + 1] - ends[child];
                 if (count > 0 || looking > 0) {
-                    auto const bits = philox({static_cast<std::uint32_t>(child), 0, 1, 0}, node);
                     descend(free.subspan(ends[child], count), requests.subspan(ends[child], count), level + 1,
-                            key_of(bits), values + child * channels_);
+                            child_key(node, child), values + child * channels_);
                 }
             }
             for (auto& look : looks_) {
                 look.share *= static_cast<double>(children);
             }
             looks_.resize(carried);
+        }
+
+        void add_share(std::uint32_t pixel, double share, double const* W) {
+            auto const weight = std::sqrt(share);
+            for (std::size_t c = 0; c < channels_; ++c) {
+                sums_[pixel * channels_ + c] += weight * W[c];
+            }
         }
 
         static std::size_t child_of(noise_request<D> const& request, std::uint32_t level) {
@@ -172,7 +224,10 @@ private:
         /// Divides a cell among the pixels that look at it.
         void divide(key const& node, double const* W) {
             parts_.assign(looks_.begin(), looks_.end());
-            std::sort(parts_.begin(), parts_.end(), [](auto const& a, auto const& b) { return a.pixel < b.pixel; });
+            auto const by_pixel = [](auto const& a, auto const& b) { return a.pixel < b.pixel; };
+            if (!std::is_sorted(parts_.begin(), parts_.end(), by_pixel)) {
+                std::sort(parts_.begin(), parts_.end(), by_pixel);
+            }
             std::size_t count = 0;
             double total = 0;
             for (auto const& look : parts_) {
@@ -184,27 +239,21 @@ private:
                 }
             }
             if (count == 1) {
-                auto const weight = std::sqrt(total);
-                for (std::size_t c = 0; c < channels_; ++c) {
-                    sums_[parts_[0].pixel * channels_ + c] += weight * W[c];
-                }
+                add_share(parts_[0].pixel, total, W);
                 return;
             }
             part_shares_.resize(count);
             for (std::size_t j = 0; j < count; ++j) {
                 part_shares_[j] = std::sqrt(parts_[j].share / total);
             }
+            // Numbers after those of the children, since another frame may divide the same cell.
+            auto const blocks = (count + 3) / 4;
+            draw(node, children / 4, blocks);
             for (std::size_t c = 0; c < channels_; ++c) {
-                part_values_.clear();
-                // Numbers after those of the children, since another frame may divide the same cell.
-                for (auto block = children / 4; part_values_.size() < count; ++block) {
-                    auto const drawn = normals(node, block, c);
-                    part_values_.insert(part_values_.end(), drawn.begin(), drawn.end());
-                }
-                part_values_.resize(count);
-                bridge(W[c], part_shares_, part_values_);
+                auto const values = std::span(drawn_).subspan(c * 4 * blocks, count);
+                bridge(W[c], part_shares_, values);
                 for (std::size_t j = 0; j < count; ++j) {
-                    sums_[parts_[j].pixel * channels_ + c] += std::sqrt(parts_[j].share) * part_values_[j];
+                    sums_[parts_[j].pixel * channels_ + c] += std::sqrt(parts_[j].share) * values[j];
                 }
             }
         }
@@ -212,12 +261,12 @@ private:
         std::span<double> sums_;
         std::size_t channels_;
         std::span<noise_request<D>> requests_;
-        std::vector<noise_request<D>> scratch_;
+        std::unique_ptr<noise_request<D>[]> scratch_;
         std::vector<double> values_; ///< [levels, children, channels]
         std::vector<look> looks_;
         std::vector<look> parts_;
         std::vector<double> part_shares_;
-        std::vector<double> part_values_;
+        std::vector<double> drawn_;
         std::array<double, children> root_shares_{};
     };
 

@@ -2,6 +2,7 @@
 // [GR sec. 3.4] Latent normalisation: AdaIN that gives every frame's background the statistics of the first frame's.
 #pragma once
 
+#include <genrender/core/elementwise.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
 
 #include <algorithm>
@@ -22,11 +23,12 @@ void adain(strided_view<Real, 3> z, channel_statistics<std::type_identity_t<Real
     require_extents("adain", "to", std::array{to.mean.size()}, std::array{z.extent(0)});
     for (std::size_t c = 0; c < z.extent(0); ++c) {
         auto const scale = to.deviation[c] / from.deviation[c];
-        for (std::size_t row = 0; row < z.extent(1); ++row) {
-            for (std::size_t column = 0; column < z.extent(2); ++column) {
-                z(c, row, column) = (z(c, row, column) - from.mean[c]) * scale + to.mean[c];
-            }
-        }
+        for_each_element(
+            z[c],
+            [scale, mean_from = from.mean[c], mean_to = to.mean[c]](auto const& value) {
+                return (value - mean_from) * scale + mean_to;
+            },
+            z[c]);
     }
 }
 

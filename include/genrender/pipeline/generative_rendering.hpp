@@ -32,10 +32,15 @@ struct generative_rendering {
                                              : std::vector<frame_index>{};
     }
 
-    /// Post-attention injection needs them.
+    /// Post-attention injection needs them, in any step that has keyframes.
     template <class Real>
     bool uses_correspondence(render_settings<Real> const& settings) const {
-        return settings.post_attention;
+        for (std::size_t step = 0; settings.post_attention && step < settings.steps; ++step) {
+            if (has_keyframes(settings, step)) {
+                return true;
+            }
+        }
+        return false;
     }
 
     /// The body of Alg. 1's loop.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/attention/attention_site.hpp>
+#include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/correspondence/surface_correspondence.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
@@ -52,6 +53,10 @@ struct render_settings {
     Real window_begin = 0;                        ///< first and
     Real window_end = 1; ///< last share of the steps with keyframes and injection, [begin, end)
 
+    genrender::feature_storage feature_storage = genrender::feature_storage::same; ///< of keyframes
+    /// Whether a denoiser that can (residual_lender) keeps what the keyframe pass has computed of keyframes: the same
+    /// frames to the bit in less time, for memory that memory_plan tells.
+    bool reuses_keyframes = true;
     std::size_t frames_per_call = 1; ///< frames that the injected pass gives the denoiser at once
 };
 

@@ -9,6 +9,7 @@
 #include <genrender/core/tensor.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
 #include <genrender/keyframes/recorder.hpp>
+#include <genrender/keyframes/stoppable_denoiser.hpp>
 #include <genrender/pipeline/progress.hpp>
 #include <genrender/pipeline/render_report.hpp>
 #include <genrender/pipeline/render_settings.hpp>
@@ -74,23 +75,23 @@ public:
         return {static_cast<std::size_t>(std::ranges::size(run_->phi->sites())), run_->phi->branches()};
     }
 
-    /// f_KF, F_KF <- Phi(z_KF, D_KF, c): denoises the frames KF as one stack and keeps their features at the places
-    /// that take part; with `extended` they attend to each other (eq. 3). Throws value_error if the denoiser did not
-    /// run the processor at one of these places.
+    /// f_KF, F_KF <- Phi(z_KF, D_KF, c): denoises the frames KF as one stack, as far as the denoiser must run, and keeps
+    /// their features at the places that take part; with `extended` they attend to each other (eq. 3). Throws
+    /// value_error if the denoiser did not run the processor at one of these places, or cannot store features as the
+    /// settings say.
     feature_bank<features_type> record_keyframes(std::vector<frame_index> const& KF, bool extended) const {
         run_->meter->begin(step_, render_pass::keyframes, KF.size());
         auto const start = clock::now();
         auto const& shape = z_->shape();
         auto z_KF = latents<real_type>::from_shape({KF.size(), shape[1], shape[2], shape[3]});
-        auto x0_KF = z_KF; // Not read: keyframes are denoised again with all the others.
         for (std::size_t k = 0; k < KF.size(); ++k) {
             copy(to_view(z_KF)[k], to_view(*z_)[KF[k].value]);
         }
         auto bank = new_bank();
-        recorder<features_type> const record(
-            bank, [this](attention_place place) { return takes_part(place); }, extended);
+        auto const participates = [this](attention_place place) { return takes_part(place); };
+        recorder<features_type> const record(bank, participates, extended, settings().feature_storage);
         auto const begin = clock::now();
-        (*run_->phi)(to_view(x0_KF), to_view(std::as_const(z_KF)), sigma_, KF, record);
+        run_keyframes(to_view(std::as_const(z_KF)), KF, record);
         auto const denoiser = seconds_since(begin);
         run_->report->add_seconds(denoiser, seconds_since(start) - denoiser);
         require_recorded(bank, "keyframes");
@@ -164,6 +165,34 @@ private:
         return std::chrono::duration<double>(clock::now() - start).count();
     }
 
+    /// The keyframe pass of a denoiser that can end it early, or of one that estimates frames that nobody asked for.
+    void run_keyframes(strided_view<real_type const, 4> z_KF, std::vector<frame_index> const& KF,
+                       recorder<features_type> const& record) const {
+        if constexpr (stoppable_denoiser<Phi>) {
+            auto const last = last_sites(*run_->phi, [this](attention_place place) { return takes_part(place); });
+            if constexpr (residual_lender<Phi>) {
+                run_->phi->run_until(z_KF, sigma_, KF, record, last, settings().reuses_keyframes ? &lent_ : nullptr);
+            } else {
+                run_->phi->run_until(z_KF, sigma_, KF, record, last);
+            }
+        } else {
+            auto x0_KF =
+                latents<real_type>::from_shape({z_KF.extent(0), z_KF.extent(1), z_KF.extent(2), z_KF.extent(3)});
+            (*run_->phi)(to_view(x0_KF), z_KF, sigma_, KF, record);
+        }
+    }
+
+    /// One call of the denoiser, which may know something of its frames from the keyframe pass.
+    template <class Processor>
+    void estimate(strided_view<real_type, 4> x0, strided_view<real_type const, 4> z,
+                  std::span<frame_index const> frames, Processor& processor) const {
+        if constexpr (residual_lender<Phi>) {
+            (*run_->phi)(x0, z, sigma_, frames, processor, lent_);
+        } else {
+            (*run_->phi)(x0, z, sigma_, frames, processor);
+        }
+    }
+
     template <class CallLoop, class MakeProcessor>
     void denoise_frames(CallLoop const& loop, MakeProcessor const& make_processor) const {
         auto const count = frame_count();
@@ -182,8 +211,8 @@ private:
             }
             auto const& processor = make_processor(std::span<frame_index const>(frames));
             auto const begin = clock::now();
-            (*run_->phi)(to_view(*x0_).slice(first, frames.size()), to_view(*z_).slice(first, frames.size()), sigma_,
-                         frames, processor);
+            estimate(to_view(*x0_).slice(first, frames.size()), to_view(*z_).slice(first, frames.size()), frames,
+                     processor);
             auto const denoiser = seconds_since(begin);
             {
                 std::lock_guard const lock(mutex);
@@ -202,6 +231,7 @@ private:
     latents<real_type> const* z_;
     real_type sigma_;
     std::size_t step_;
+    mutable residuals_of<Phi> lent_{}; // written by the keyframe pass, before frames are denoised
 };
 
 } // namespace genrender

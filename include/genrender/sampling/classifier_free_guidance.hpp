@@ -2,6 +2,7 @@
 // Classifier-free guidance (Ho and Salimans 2022, eq. 6): from the unconditional estimate past the conditional one.
 #pragma once
 
+#include <genrender/core/elementwise.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -25,17 +26,9 @@ void guide(strided_view<Real, 4> out, in_view<Real, 4> x0_uncond, in_view<Real, 
     require_shape("guide", "x0_uncond", x0_uncond, out.extents());
     require_shape("guide", "x0_cond", x0_cond, out.extents());
     require_value(std::isfinite(scale), "guide", "scale", scale, "a finite number");
-    for (std::size_t frame = 0; frame < out.extent(0); ++frame) {
-        for (std::size_t channel = 0; channel < out.extent(1); ++channel) {
-            for (std::size_t row = 0; row < out.extent(2); ++row) {
-                for (std::size_t column = 0; column < out.extent(3); ++column) {
-                    auto const uncond = x0_uncond(frame, channel, row, column);
-                    auto const cond = x0_cond(frame, channel, row, column);
-                    out(frame, channel, row, column) = uncond + scale * (cond - uncond);
-                }
-            }
-        }
-    }
+    for_each_element(
+        out, [scale](auto const& uncond, auto const& cond) { return uncond + scale * (cond - uncond); }, x0_uncond,
+        x0_cond);
 }
 
 } // namespace genrender

@@ -12,6 +12,27 @@
 
 namespace genrender {
 
+namespace detail {
+
+/// z becomes the Euler step towards x0 + further (x0 - x0_last).
+template <class Latents, std::floating_point Real>
+void take_extrapolated_step(Latents& z, Latents const& x0, Latents const& x0_last, Real further, Real sigma,
+                            Real sigma_next) {
+    if constexpr (contiguous_latents<Latents, Real>) {
+        auto const kept = sigma_next / sigma;
+        auto const formula = [kept, added = 1 - kept, further](auto const& now, auto const& clean, auto const& last) {
+            return kept * now + added * (clean + further * (clean - last));
+        };
+        if (write_elements(z, formula, z, x0, x0_last)) {
+            return;
+        }
+    }
+    Latents const x0_middle = x0 + further * (x0 - x0_last);
+    z = euler_step(z, x0_middle, sigma, sigma_next);
+}
+
+} // namespace detail
+
 /// The latents at the last of the noise levels, from z at the first, following D by DPM-Solver++(2M). D is evaluated
 /// once a step. The first step and a step to level 0 are of first order: the one has no past, the other is infinitely
 /// long in log sigma.
@@ -34,10 +55,9 @@ Latents dpmpp_2m(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after
         if (x0_last && sigma_next > 0) {
             auto const h_last = std::log(sigmas[i - 1] / sigma);
             auto const h = std::log(sigma / sigma_next);
-            Latents const x0_middle = x0 + (h / (2 * h_last)) * (x0 - *x0_last);
-            z = euler_step(z, x0_middle, sigma, sigma_next);
+            detail::take_extrapolated_step(z, x0, *x0_last, h / (2 * h_last), sigma, sigma_next);
         } else {
-            z = euler_step(z, x0, sigma, sigma_next);
+            detail::write_euler_step(z, z, x0, sigma, sigma_next);
         }
         x0_last = std::move(x0);
         after_step(i, z);

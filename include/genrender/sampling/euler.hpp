@@ -2,6 +2,7 @@
 // [EDM alg. 1] Euler's method: one evaluation a step, first order. Without its lines 6 to 8, which make it Heun's.
 #pragma once
 
+#include <genrender/core/elementwise.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
 #include <concepts>
@@ -19,6 +20,44 @@ Latents euler_step(Latents const& z, Latents const& x0, Real sigma, Real sigma_n
     return kept * z + (1 - kept) * x0;
 }
 
+namespace detail {
+
+/// Latents whose elements the library can see as one block: samplers go through them once a step and allocate nothing.
+template <class Latents, class Real>
+concept contiguous_latents = requires(Latents& z, Latents const& x0) {
+    { to_view(z).data() } -> std::same_as<Real*>;
+    { to_view(x0).data() } -> std::same_as<Real const*>;
+    { to_view(z).is_contiguous() } -> std::same_as<bool>;
+};
+
+/// out = formula(in...) element by element, where all are blocks of as many elements; elsewhere false and nothing done.
+template <class Latents, class Formula, class... In>
+bool write_elements(Latents& out, Formula const& formula, In const&... in) {
+    auto const view = to_view(out);
+    if (!view.is_contiguous() || !((to_view(in).is_contiguous() && to_view(in).size() == view.size()) && ...)) {
+        return false;
+    }
+    for_each_element(view.data(), view.size(), formula, to_view(in).data()...);
+    return true;
+}
+
+/// `out`, which may be z, becomes euler_step(z, x0, sigma, sigma_next).
+template <class Latents, std::floating_point Real>
+void write_euler_step(Latents& out, Latents const& z, Latents const& x0, Real sigma, Real sigma_next) {
+    if constexpr (contiguous_latents<Latents, Real>) {
+        auto const kept = sigma_next / sigma;
+        auto const formula = [kept, added = 1 - kept](auto const& now, auto const& clean) {
+            return kept * now + added * clean;
+        };
+        if (write_elements(out, formula, z, x0)) {
+            return;
+        }
+    }
+    out = euler_step(z, x0, sigma, sigma_next);
+}
+
+} // namespace detail
+
 /// The latents at the last of the noise levels, from z at the first, following D by Euler's method; the deterministic
 /// sampler of DDIM. D is evaluated once a step, steps being one fewer than levels.
 ///
@@ -32,7 +71,7 @@ Latents euler(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_st
     require_noise_levels("euler", sigmas);
     for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
         Latents const x0 = D(std::as_const(z), sigmas[i]);
-        z = euler_step(z, x0, sigmas[i], sigmas[i + 1]);
+        detail::write_euler_step(z, z, x0, sigmas[i], sigmas[i + 1]);
         after_step(i, z);
     }
     return z;

@@ -10,6 +10,30 @@
 
 namespace genrender {
 
+namespace detail {
+
+/// z becomes z + (sigma_next - sigma) (d + d_next) / 2 with the slopes d = (z - x0) / sigma here and d_next = (z_euler -
+/// x0_next) / sigma_next there.
+template <class Latents, std::floating_point Real>
+void take_mean_step(Latents& z, Latents const& x0, Latents const& z_euler, Latents const& x0_next, Real sigma,
+                    Real sigma_next) {
+    auto const half = (sigma_next - sigma) / 2;
+    if constexpr (contiguous_latents<Latents, Real>) {
+        auto const formula = [half, here = 1 / sigma, there = 1 / sigma_next](
+                                 auto const& now, auto const& clean, auto const& next, auto const& clean_next) {
+            return now + half * (here * (now - clean) + there * (next - clean_next));
+        };
+        if (write_elements(z, formula, z, x0, z_euler, x0_next)) {
+            return;
+        }
+    }
+    Latents const d = (1 / sigma) * (z - x0);
+    Latents const d_next = (1 / sigma_next) * (z_euler - x0_next);
+    z = z + half * (d + d_next);
+}
+
+} // namespace detail
+
 /// The latents at the last of the noise levels, from z at the first, following D by Heun's method: an Euler step,
 /// then the same step again along the mean of the slopes at both of its ends. D is evaluated twice a step, the second
 /// time at the step's lower level; but once in a step to level 0, where the slope (z - x0) / sigma has no value.
@@ -20,18 +44,17 @@ template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = n
 Latents heun(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
     using Real = level_type<Sigmas>;
     require_noise_levels("heun", sigmas);
+    Latents z_euler = z;
     for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
         Real const sigma = sigmas[i];
         Real const sigma_next = sigmas[i + 1];
         Latents const x0 = D(std::as_const(z), sigma);
-        Latents const z_euler = euler_step(z, x0, sigma, sigma_next);
         if (sigma_next > 0) {
-            Latents const x0_next = D(z_euler, sigma_next);
-            Latents const d = (1 / sigma) * (z - x0);
-            Latents const d_next = (1 / sigma_next) * (z_euler - x0_next);
-            z = z + ((sigma_next - sigma) / 2) * (d + d_next);
+            detail::write_euler_step(z_euler, z, x0, sigma, sigma_next);
+            Latents const x0_next = D(std::as_const(z_euler), sigma_next);
+            detail::take_mean_step(z, x0, z_euler, x0_next, sigma, sigma_next);
         } else {
-            z = z_euler;
+            detail::write_euler_step(z, z, x0, sigma, sigma_next);
         }
         after_step(i, z);
     }

@@ -2,6 +2,7 @@
 // [EDM eq. 7] From what a raw network predicts to the clean estimate D(z, sigma) = c_skip z + c_out F(c_in z, t).
 #pragma once
 
+#include <genrender/core/elementwise.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -81,16 +82,10 @@ void to_clean(strided_view<Real, 4> out, prediction predicted, in_view<Real, 4> 
     require_shape("to_clean", "z", z, out.extents());
     require_shape("to_clean", "F", F, out.extents());
     auto const factors = scalings_of(predicted, sigma);
-    for (std::size_t frame = 0; frame < out.extent(0); ++frame) {
-        for (std::size_t channel = 0; channel < out.extent(1); ++channel) {
-            for (std::size_t row = 0; row < out.extent(2); ++row) {
-                for (std::size_t column = 0; column < out.extent(3); ++column) {
-                    out(frame, channel, row, column) = factors.c_skip * z(frame, channel, row, column) +
-                                                       factors.c_out * F(frame, channel, row, column);
-                }
-            }
-        }
-    }
+    for_each_element(
+        out,
+        [&factors](auto const& noisy, auto const& output) { return factors.c_skip * noisy + factors.c_out * output; },
+        z, F);
 }
 
 } // namespace genrender

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+# Times the compiler on each file of this folder and writes OUT as Google Benchmark would.
+# Run: cmake -D COMMANDS=compile_commands.json -D OUT=compile_times.json -P compile_times.cmake
+cmake_minimum_required(VERSION 3.25)
+set(repetitions 3)
+
+file(READ ${COMMANDS} commands)
+string(JSON count LENGTH "${commands}")
+math(EXPR last "${count} - 1")
+set(entries "")
+foreach(i RANGE ${last})
+    string(JSON file GET "${commands}" ${i} file)
+    if(NOT file MATCHES "/compile_times/([a-z_]+)\\.cpp$")
+        continue()
+    endif()
+    set(name ${CMAKE_MATCH_1})
+    string(JSON command GET "${commands}" ${i} command)
+    string(JSON directory GET "${commands}" ${i} directory)
+    separate_arguments(command UNIX_COMMAND "${command}")
+    foreach(repetition RANGE 1 ${repetitions})
+        string(TIMESTAMP start "%s%f")
+        execute_process(COMMAND ${command} WORKING_DIRECTORY ${directory} ERROR_QUIET COMMAND_ERROR_IS_FATAL ANY)
+        string(TIMESTAMP end "%s%f")
+        math(EXPR microseconds "${end} - ${start}")
+        list(APPEND entries "{\"run_name\": \"compile_time/${name}\", \"run_type\": \"iteration\", \
+\"real_time\": ${microseconds}, \"time_unit\": \"us\"}")
+    endforeach()
+endforeach()
+if(NOT entries)
+    message(FATAL_ERROR "${COMMANDS}: has no file of compile_times/, expected those of the benchmarks' build")
+endif()
+list(JOIN entries ",\n" entries)
+file(WRITE ${OUT} "{\"benchmarks\": [\n${entries}\n]}\n")

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// The formats in which features of keyframes may be kept until every frame has read them.
+#pragma once
+
+#include <genrender/attention/attention_call.hpp>
+#include <genrender/core/error.hpp>
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace genrender {
+
+/// How K_KF, V_KF and F_KF are kept; what is computed with them is computed in the engine's own scalars.
+enum class feature_storage : std::uint8_t {
+    same, ///< as they were computed
+    f16,  ///< float16, IEEE binary16: 11 bits of precision, numbers up to 65504
+    bf16  ///< bfloat16, the upper half of a float: 8 bits of precision, the range of a float
+};
+
+/// Bytes of one kept value.
+template <std::floating_point Real>
+constexpr std::size_t feature_bytes(feature_storage storage) {
+    return storage == feature_storage::same ? sizeof(Real) : 2;
+}
+
+/// An attention_call that can keep features in 16 bits, an optional capability.
+///
+/// expression                | type            | meaning
+/// --------------------------|-----------------|-----------------------------------------------------------------------
+/// `call.stored(x, storage)` | `features_type` | x rounded to the format, in memory of its own; `attend` takes it as
+///                           |                 | keys and values beside others, `mix` as F_KF
+///
+/// A model owes that feature_storage::same returns x, and that every value of the result is the one of the format
+/// nearest to x's.
+template <class Call>
+concept storing_attention_call = attention_call<Call> &&
+    requires(Call& call, typename Call::features_type const& x, feature_storage storage) {
+    { call.stored(x, storage) } -> std::convertible_to<typename Call::features_type>;
+};
+
+/// x in the format. Throws value_error if it is to be another one than it has and the engine's call cannot store it.
+template <attention_call Call>
+typename Call::features_type stored_features(Call& call, typename Call::features_type x, feature_storage storage) {
+    if (storage == feature_storage::same) {
+        return x;
+    }
+    if constexpr (storing_attention_call<Call>) {
+        return call.stored(x, storage);
+    } else {
+        throw value_error("stored_features: storage is of 16 bits, expected feature_storage::same for an attention "
+                          "call without `stored`");
+    }
+}
+
+} // namespace genrender

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Keys and values that attention reads where they lie: any strides, stored as Real or in 16 bits.
+#pragma once
+
+#include <genrender/core/linalg.hpp>
+#include <genrender/core/strided_view.hpp>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace genrender {
+
+/// A read-only view [tokens, channels] of features in any of the storage types Real, float16 and bfloat16, whose
+/// elements are read as Real. Views and tensors of each of them convert to it.
+template <class Real>
+class stored_view {
+public:
+    using value_type = Real;
+
+    stored_view() = default;
+
+    template <class Source>
+        requires(!std::same_as<std::remove_cvref_t<Source>, stored_view> &&
+                 (std::convertible_to<Source, strided_view<Real const, 2>> ||
+                  std::convertible_to<Source, strided_view<float16 const, 2>> ||
+                  std::convertible_to<Source, strided_view<bfloat16 const, 2>>))
+    stored_view(Source&& source) {
+        if constexpr (std::convertible_to<Source, strided_view<Real const, 2>>) {
+            view_ = strided_view<Real const, 2>(std::forward<Source>(source));
+        } else if constexpr (std::convertible_to<Source, strided_view<float16 const, 2>>) {
+            view_ = strided_view<float16 const, 2>(std::forward<Source>(source));
+        } else {
+            view_ = strided_view<bfloat16 const, 2>(std::forward<Source>(source));
+        }
+    }
+
+    /// What `visitor` returns for the view in its storage type.
+    template <class Visitor>
+    decltype(auto) visit(Visitor&& visitor) const {
+        return std::visit(std::forward<Visitor>(visitor), view_);
+    }
+
+    std::array<std::size_t, 2> extents() const {
+        return visit([](auto const& view) { return view.extents(); });
+    }
+    std::size_t extent(std::size_t axis) const { return extents()[axis]; }
+
+    /// One element, converted.
+    Real operator()(std::size_t token, std::size_t channel) const {
+        return visit([&](auto const& view) { return static_cast<Real>(view(token, channel)); });
+    }
+
+    /// The view of `count` tokens from `begin` on.
+    stored_view slice(std::size_t begin, std::size_t count) const {
+        return visit([&](auto const& view) { return stored_view(view.slice(begin, count)); });
+    }
+
+private:
+    std::variant<strided_view<Real const, 2>, strided_view<float16 const, 2>, strided_view<bfloat16 const, 2>> view_;
+};
+
+/// Keys and values of some tokens.
+template <class Real>
+struct key_value_view {
+    stored_view<Real> K; ///< [tokens, channels]
+    stored_view<Real> V; ///< [tokens, channels]
+
+    /// [tokens] For how many equal tokens each one stands, whole or not, > 0: log(counts) is added to its logits, as if
+    /// it were repeated so often (Bolya and Hoffman 2023, 'Token Merging for Fast Stable Diffusion', proportional
+    /// attention). A view of nothing says once each.
+    strided_view<Real const, 1> counts{nullptr, {0}, {1}};
+};
+
+} // namespace genrender

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1: f_KF, F_KF <- Phi(z_KF, D_KF, c)] What a denoiser may offer for the keyframe pass: to end it early, and
+// not to do again for a keyframe what that pass has done.
+#pragma once
+
+#include <genrender/sampling/denoiser.hpp>
+
+#include <concepts>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace genrender {
+
+/// A denoiser that can end a call after the last site whose features are wanted, an optional capability: the keyframe
+/// pass needs no estimates.
+///
+/// expression                                         | type | meaning
+/// ---------------------------------------------------|------|--------------------------------------------------------
+/// `phi.run_until(z, sigma, frames, processor, last)` | void | runs the processor at the sites 0 ... last[branch] of
+///                                                    |      | every branch as `phi(x0, z, sigma, frames, processor)`
+///                                                    |      | does, to the bit; nothing of a branch without a last
+///                                                    |      | site. `last` has one entry a branch
+///
+/// It may run more sites than asked for.
+template <class Phi>
+concept stoppable_denoiser = denoiser<Phi> &&
+    requires(Phi const& phi, strided_view<typename Phi::real_type const, 4> z, typename Phi::real_type sigma,
+             std::span<frame_index const> frames, attention_processor_archetype& processor,
+             std::span<std::optional<site_index> const> last) {
+    phi.run_until(z, sigma, frames, processor, last);
+};
+
+/// A denoiser that lends what a call has computed of its frames to later calls of the same frames at the same z and
+/// sigma, such as the residuals of a ControlNet and the network's way down, an optional capability.
+///
+/// expression                                                 | type            | meaning
+/// -----------------------------------------------------------|-----------------|--------------------------------------
+/// `typename Phi::residuals_type`                             | movable         | what is lent; made without arguments
+/// `phi.run_until(z, sigma, frames, processor, last, lent)`   | void            | as above, and fills in `*lent`
+/// `phi(x0, z, sigma, frames, processor, lent)`               | void            | as without `lent`, to the bit
+/// `phi.residual_bytes()`                                     | size_t          | what is lent takes a frame
+///
+/// The model decides what is equal: it reuses only what both processors leave as it is (is_plain_at), and only for
+/// frames, z and sigma that are those of the first call. It may be called from several threads with one `lent`.
+template <class Phi>
+concept residual_lender = stoppable_denoiser<Phi> && std::movable<typename Phi::residuals_type> &&
+    std::default_initializable<typename Phi::residuals_type> &&
+    requires(Phi const& phi, strided_view<typename Phi::real_type, 4> x0,
+             strided_view<typename Phi::real_type const, 4> z, typename Phi::real_type sigma,
+             std::span<frame_index const> frames, attention_processor_archetype& processor,
+             std::span<std::optional<site_index> const> last, typename Phi::residuals_type& lent,
+             typename Phi::residuals_type const& known) {
+    phi.run_until(z, sigma, frames, processor, last, &lent);
+    phi(x0, z, sigma, frames, processor, known);
+    { phi.residual_bytes() } -> std::convertible_to<std::size_t>;
+};
+
+namespace detail {
+
+struct no_residuals {};
+
+template <class Phi>
+struct residuals_of {
+    using type = no_residuals;
+};
+
+template <residual_lender Phi>
+struct residuals_of<Phi> {
+    using type = typename Phi::residuals_type;
+};
+
+} // namespace detail
+
+/// What a denoiser lends; an empty type for one that does not.
+template <denoiser Phi>
+using residuals_of = typename detail::residuals_of<Phi>::type;
+
+/// The last site that takes part, by branch; none in a branch without one. `takes_part(place)` tells.
+template <denoiser Phi, class TakesPart>
+std::vector<std::optional<site_index>> last_sites(Phi const& phi, TakesPart const& takes_part) {
+    std::vector<std::optional<site_index>> last(phi.branches());
+    for (std::uint32_t branch = 0; branch < last.size(); ++branch) {
+        for (std::uint32_t site = 0; site < std::ranges::size(phi.sites()); ++site) {
+            if (takes_part(attention_place{{site}, branch})) {
+                last[branch] = site_index{site};
+            }
+        }
+    }
+    return last;
+}
+
+} // namespace genrender

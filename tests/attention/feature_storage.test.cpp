@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Formats of kept features: bytes, who can keep them, who cannot.
+#include <genrender/attention/feature_storage.hpp>
+
+#include <genrender/injection/host_attention_call.hpp>
+
+#include "support/matrix_module.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <vector>
+
+using namespace genrender;
+
+namespace {
+
+using call_type = host_attention_call<float, testing::matrix_module<float>>;
+using foreign_call = attention_call_archetype<int, float>;
+
+} // namespace
+
+TEST_SUITE("attention/feature_storage") {
+    TEST_CASE("a kept value takes its format's bytes") {
+        CHECK(feature_bytes<float>(feature_storage::same) == 4);
+        CHECK(feature_bytes<double>(feature_storage::same) == 8);
+        CHECK(feature_bytes<double>(feature_storage::f16) == 2);
+        CHECK(feature_bytes<float>(feature_storage::bf16) == 2);
+    }
+    TEST_CASE("calls of host memory store features and an engine's need not") {
+        CHECK(storing_attention_call<call_type>);
+        CHECK(attention_call<foreign_call>);
+        CHECK_FALSE(storing_attention_call<foreign_call>);
+    }
+    TEST_CASE("features stay the same handle unless another format is asked for") {
+        testing::matrix_module<float> const module(2, 1, 1);
+        std::array const frames{frame_index{0}};
+        auto const f = host_features<float>::allocate({1, 3, 2});
+        f.view()(0, 1, 1) = 1.0F + 0x1p-9F;
+        call_type call({}, frames, f, module);
+        CHECK(stored_features(call, f, feature_storage::same).view().data() == f.view().data());
+        CHECK(stored_features(call, f, feature_storage::f16).storage() == feature_storage::f16);
+    }
+    TEST_CASE("a format that the engine cannot store is refused") {
+        auto const store = [](feature_storage storage) {
+            foreign_call call; // nothing of it is called
+            return stored_features(call, 5, storage);
+        };
+        CHECK(store(feature_storage::same) == 5);
+        CHECK_THROWS_WITH_AS(store(feature_storage::f16),
+                             "stored_features: storage is of 16 bits, expected feature_storage::same for an attention "
+                             "call without `stored`",
+                             value_error);
+    }
+}

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// Measurements beside targets and peers, and the table of it.
+#include <benchmarks/support/benchmark_table.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace genrender::benchmarks;
+
+namespace {
+
+target share_of_mix(double at_least) {
+    return {std::regex("^mix/"), "mix is fast", "share_of_floor", std::regex(""), "", at_least, true};
+}
+
+/// Two cases of a kernel, the second with a peer, and one that failed.
+results three_cases() {
+    results all;
+    all.measurements = {
+        {"mix/tokens:64", 2e-3, 3, {{"share_of_floor", 0.8}, {"bytes_per_second", 2e9}}, "copy", ""},
+        {"mix/tokens:128", 4e-3, 3, {{"share_of_floor", 0.6}, {"FLOP/s", 3e10}, {"speed_up", 1.9}}, "copy", ""},
+        {"plan", 0, 0, {}, "", "no memory"}};
+    all.peers = {{"mix/tokens:128", "NumPy", 8e-3}, {"mix/tokens:256", "NumPy", 1}};
+    all.missing = {{"engine", "No module named 'engine'"}};
+    return all;
+}
+
+} // namespace
+
+TEST_SUITE("benchmarks_support/benchmark_table") {
+    TEST_CASE("a target is met or missed by every case that it holds for") {
+        auto const judged = judge(three_cases(), std::vector{share_of_mix(0.7)});
+        REQUIRE(judged.cases.size() == 3);
+        REQUIRE(judged.cases[0].verdicts.size() == 1);
+        CHECK(judged.cases[0].verdicts[0].is_met());
+        CHECK_FALSE(judged.cases[1].verdicts[0].is_met());
+        CHECK(judged.cases[2].verdicts.empty());
+        CHECK(judged.count(true) == 1);
+        CHECK(judged.count(false) == 1);
+        CHECK(judged.unmeasured.empty());
+    }
+
+    TEST_CASE("a limit may be the greatest value too and is itself within") {
+        CHECK(verdict{"share", 0.7, 0.7, true}.is_met());
+        CHECK(verdict{"share", 0.7, 0.7, false}.is_met());
+        CHECK_FALSE(verdict{"share", 0.8, 0.7, false}.is_met());
+        CHECK_FALSE(verdict{"share", std::nan(""), 0.7, true}.is_met());
+    }
+
+    TEST_CASE("a peer's ratio is its time over ours") {
+        auto const judged =
+            judge(three_cases(),
+                  std::vector<target>{
+                      {std::regex("."), "faster than NumPy", "ratio_to_peer", std::regex("^NumPy"), "", 1, true},
+                      {std::regex("."), "faster than all others", "ratio_to_peer", std::regex("^Other"), "", 1, true}});
+        REQUIRE(judged.cases[1].peers.size() == 1);
+        CHECK(judged.cases[1].peers[0].ratio == doctest::Approx(2));
+        REQUIRE(judged.cases[1].verdicts.size() == 1);
+        CHECK(judged.cases[1].verdicts[0].value == doctest::Approx(2));
+        CHECK(judged.unmatched == std::vector<std::string>{"mix/tokens:256"});
+        CHECK(judged.unmeasured == std::vector<std::string>{"faster than all others"});
+    }
+
+    TEST_CASE("a target may set a case beside another of ours") {
+        target const twice{std::regex("^mix/tokens:(1)28"),
+                           "wide is no slower",
+                           "ratio_to_case",
+                           std::regex(""),
+                           "mix/tokens:64",
+                           0.5,
+                           true};
+        target const named_by_group{std::regex("^mix/tokens:(64)"),
+                                    "as fast as itself",
+                                    "ratio_to_case",
+                                    std::regex(""),
+                                    "mix/tokens:$1",
+                                    1,
+                                    false};
+        target const of_nothing{std::regex("^mix"), "beside nothing", "ratio_to_case", std::regex(""), "plan", 1, true};
+        auto const judged = judge(three_cases(), std::vector{twice, named_by_group, of_nothing});
+        REQUIRE(judged.cases[0].verdicts.size() == 1);
+        CHECK(judged.cases[0].verdicts[0].value == 1);
+        REQUIRE(judged.cases[1].verdicts.size() == 1);
+        CHECK(judged.cases[1].verdicts[0].measure == "ratio to mix/tokens:64");
+        CHECK(judged.cases[1].verdicts[0].value == doctest::Approx(0.5));
+        CHECK(judged.unmeasured == std::vector<std::string>{"beside nothing"});
+    }
+
+    TEST_CASE("the table has a row a case and tells below it what is missing") {
+        auto const judged = judge(three_cases(), std::vector{share_of_mix(0.7)});
+        CHECK(markdown_table(judged, {"a processor", 2, "a compiler", "-O3", "SSE"}) ==
+              "| kernel | shape | time | rate | share of floor | target | ratio to peer |\n"
+              "|---|---|---|---|---|---|---|\n"
+              "| mix | tokens 64 | 2.00 ms | 2.00 GB/s | 0.800 of copy | met: 0.800 ≥ 0.700, share of floor | - |\n"
+              "| mix | tokens 128 | 4.00 ms | 30.0 GFLOP/s; speed up 1.90 | 0.600 of copy |"
+              " missed: 0.600 ≥ 0.700, share of floor | 2.00 NumPy |\n"
+              "| plan | - | failed: no memory | - | - | - | - |\n"
+              "\n"
+              "Medians of 3 repetitions on a processor, 2 threads, a compiler, -O3 (SSE).\n"
+              "A share of 1 is as fast as the floor, which is timed in turn with the kernel; a ratio above 1 is faster "
+              "than the peer.\n"
+              "\n"
+              "Targets: 1 met, 1 missed.\n"
+              "- A peer's case that we have not: mix/tokens:256\n"
+              "- Peer missing: engine (No module named 'engine')\n");
+    }
+
+    TEST_CASE("the JSON holds every figure in full") {
+        auto const json = to_json(judge(three_cases(), std::vector{share_of_mix(0.7)}), {"p", 2, "c", "-O3", "SSE"});
+        CHECK(json["machine"]["threads"] == 2);
+        CHECK(json["cases"].size() == 3);
+        CHECK(json["cases"][1]["name"] == "mix/tokens:128");
+        CHECK(json["cases"][1]["counters"]["FLOP/s"] == 3e10);
+        CHECK(json["cases"][1]["targets"][0]["at_least"] == 0.7);
+        CHECK(json["cases"][1]["targets"][0]["met"] == false);
+        CHECK(json["cases"][1]["peers"][0]["seconds"] == 8e-3);
+        CHECK(json["cases"][2]["failure"] == "no memory");
+        CHECK(json["peers_missing"]["engine"] == "No module named 'engine'");
+    }
+
+    TEST_CASE("numbers have three digits that count and a unit that suits them") {
+        using genrender::benchmarks::detail::time_text;
+        CHECK(time_text(1.234e-9) == "1.23 ns");
+        CHECK(time_text(12.34e-6) == "12.3 us");
+        CHECK(time_text(0.9996e-3) == "1.00 ms");
+        CHECK(time_text(123.4) == "123 s");
+        CHECK(genrender::benchmarks::detail::three_digits(0.0123) == "0.0123");
+        CHECK(genrender::benchmarks::detail::three_digits(0) == "0");
+    }
+
+    TEST_CASE("names are read as words") {
+        using genrender::benchmarks::detail::words;
+        CHECK(words("mix_rows<float>") == "mix rows float");
+        CHECK(words("tokens:64/channels:320") == "tokens 64, channels 320");
+    }
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Matches are made once as long as there is room, and again when there is none.
+#include <genrender/correspondence/token_matches.hpp>
+
+#include <genrender/core/parallel.hpp>
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+using namespace genrender;
+
+namespace {
+
+token_matches matches_of(std::uint32_t token) { return {{token, 0}, {1, 0}}; }
+
+} // namespace
+
+TEST_SUITE("correspondence/token_matches") {
+    TEST_CASE("a pair that is kept is not made again") {
+        kept_matches kept(1000);
+        std::size_t made = 0;
+        auto const make = [&] {
+            ++made;
+            return matches_of(7);
+        };
+        auto const first = kept.of({1}, {2}, make);
+        CHECK(kept.of({1}, {2}, make) == first);
+        CHECK(made == 1);
+        CHECK(first->tokens[0] == 7);
+        CHECK(kept.byte_count() == first->byte_count());
+        // The way back is another pair.
+        CHECK(kept.of({2}, {1}, make) != first);
+        CHECK(made == 2);
+    }
+
+    TEST_CASE("what there is no room for is made again and what came first stays") {
+        kept_matches kept(matches_of(0).byte_count());
+        std::size_t made = 0;
+        auto const make = [&] {
+            ++made;
+            return matches_of(3);
+        };
+        kept.of({0}, {0}, make);
+        kept.of({0}, {1}, make);
+        kept.of({0}, {1}, make);
+        CHECK(made == 3);
+        kept.of({0}, {0}, make);
+        CHECK(made == 3);
+        CHECK(kept.byte_count() == matches_of(0).byte_count());
+        kept_matches none(0);
+        CHECK(none.of({0}, {0}, make)->tokens[0] == 3);
+        CHECK(none.byte_count() == 0);
+    }
+
+    TEST_CASE("threads get equal matches") {
+        kept_matches kept(100000);
+        std::atomic<std::size_t> wrong{0};
+        threaded_loop(4)(400, [&](std::size_t n) {
+            auto const frame = static_cast<std::uint32_t>(n % 10);
+            auto const matches = kept.of({frame}, {0}, [&] { return matches_of(frame); });
+            wrong += matches->tokens[0] == frame ? 0U : 1U;
+        });
+        CHECK(wrong == 0);
+        CHECK(kept.byte_count() == 10 * matches_of(0).byte_count());
+    }
+}

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// [GR alg. 1] What is planned is what is then measured, on the heap and in products.
+#include <genrender/pipeline/memory_plan.hpp>
+
+#include "../support/counted_memory.hpp"
+#include "../support/random_scene.hpp"
+#include "../support/wide_denoiser.hpp"
+
+#include <genrender/pipeline/render.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+using namespace genrender;
+using testing::counted_memory;
+using testing::wide_denoiser;
+
+namespace {
+
+render_settings<float> two_steps() {
+    render_settings<float> settings;
+    settings.steps = 2;
+    settings.keyframes.count = 3;
+    return settings;
+}
+
+/// A run of which all is known: one site of 6 tokens and 10 channels that takes part, one of 24 tokens that does not.
+run_description described_run() {
+    run_description run;
+    run.frames = 20;
+    run.latent_channels = 4;
+    run.latent_grid = {4, 6};
+    run.branches = 2;
+    run.sites = {{"in", network_kind::denoiser, network_part::encoder, {4, 6}, 5},
+                 {"out", network_kind::denoiser, network_part::decoder, {2, 3}, 10}};
+    run.map_grid = {16, 24};
+    return run;
+}
+
+/// What a call takes.
+std::size_t bytes_of_a_call(wide_denoiser const& phi, std::uint32_t frame_count) {
+    auto const z = latents<float>::from_shape({frame_count, 4, phi.grid.height, phi.grid.width});
+    auto x0 = z;
+    std::vector<frame_index> frames;
+    for (std::uint32_t i = 0; i < frame_count; ++i) {
+        frames.push_back({i});
+    }
+    plain_attention const plain;
+    return counted_memory::peak_of([&] { phi(to_view(x0), to_view(z), 1.0F, frames, plain); });
+}
+
+/// A scene of twelve frames again and again.
+uv_maps long_scene(std::size_t frames) {
+    auto const once = testing::random_scene(33, 12, {32, 32}, 3);
+    uv_maps maps(frames, once.grid());
+    for (std::size_t i = 0; i < frames; ++i) {
+        copy(to_view(maps.uv)[i], to_view(once.uv)[i % 12]);
+        copy(to_view(maps.object)[i], to_view(once.object)[i % 12]);
+        copy(to_view(maps.coverage)[i], to_view(once.coverage)[i % 12]);
+    }
+    return maps;
+}
+
+struct planned_and_measured {
+    memory_plan plan;
+    std::size_t measured;
+    double error() const {
+        return std::abs(static_cast<double>(plan.bytes.peak) - static_cast<double>(measured)) /
+               static_cast<double>(measured);
+    }
+};
+
+planned_and_measured compare(std::size_t frames, render_settings<float> const& settings) {
+    auto const maps = long_scene(frames);
+    wide_denoiser const phi;
+    auto run = describe_run(phi, to_uv_view(maps));
+    run.network_bytes = bytes_of_a_call(phi, 2) - bytes_of_a_call(phi, 1);
+    run.call_bytes = bytes_of_a_call(phi, 1) - run.network_bytes;
+    render_report report;
+    return {plan_memory(run, settings),
+            counted_memory::peak_of([&] { render(phi, to_uv_view(maps), settings, report); })};
+}
+
+} // namespace
+
+TEST_SUITE("pipeline/memory_plan") {
+    TEST_CASE("bytes of latents and kept features are counted by hand") {
+        auto settings = two_steps();
+        auto run = described_run();
+        auto const plan = plan_memory(run, settings);
+        CHECK(plan.bytes.bank == 3 * 3 * 60 * 2 * sizeof(float)); // K, V and F of 3 keyframes, 2 branches
+        CHECK(plan.bytes.keyframe_latents == 2 * 3 * 96 * sizeof(float));
+        CHECK(plan.bytes.latents == 2 * 20 * 96 * sizeof(float)); // z and x0
+        CHECK(plan.bytes.background == 20 * 24);
+        CHECK(plan.bytes.maps == 20 * 384 * 13);
+        CHECK(plan.bytes.network == 3 * (5 * 120 - 3 * 60) * sizeof(float)); // f, Q, K, V, F but for what is kept
+        CHECK(plan.bytes.residuals == 0);
+        CHECK(plan.bytes.peak > plan.bytes.latents + plan.bytes.bank + plan.bytes.correspondence);
+        settings.feature_storage = feature_storage::f16;
+        CHECK(2 * plan_memory(run, settings).bytes.bank == plan.bytes.bank);
+        run.residual_bytes = 1000;
+        CHECK(plan_memory(run, settings).bytes.residuals == 3000);
+        settings.reuses_keyframes = false;
+        CHECK(plan_memory(run, settings).bytes.residuals == 0);
+        settings.method = sampler::heun;
+        CHECK(plan_memory(run, settings).bytes.latents > plan.bytes.latents);
+    }
+    TEST_CASE("[GR eq. 3, 5] FLOPs of attention are counted by hand") {
+        auto settings = two_steps();
+        auto const run = described_run();
+        auto const plan = plan_memory(run, settings);
+        auto const outer = 4.0 * 24 * 24 * 5;
+        auto const inner = 4.0 * 6 * 6 * 10;
+        // 2 steps, 2 branches: 20 frames and 3 keyframes run the outer site alone; at the inner one frames attend to
+        // themselves and 3 keyframes, keyframes to 3.
+        CHECK(plan.work.attention_flops == 4 * (23 * outer + (20 * 4 + 3 * 3) * inner));
+        CHECK(plan.work.plain_attention_flops == 4 * 20 * (outer + inner));
+        CHECK(plan.work.attention_ratio() > 1);
+        CHECK(plan.work.projection_flops == 4 * 23 * 6.0 * (24 * 25 + 6 * 100));
+        CHECK(plan.work.denoised_frames == frames_to_denoise(settings, 20));
+        CHECK(plan.work.noise_values == 20 * 96);
+        CHECK(plan.work.mixed_bytes == 4 * 20 * 60.0 * 4 * 5);
+        settings.keeps_own_copy = false; // keyframes among the frames leave a block out
+        CHECK(plan_memory(run, settings).work.attention_flops == plan.work.attention_flops - 4 * 3 * inner);
+        settings.pre_attention = false;
+        CHECK(plan_memory(run, settings).work.attention_flops == 4 * 23 * (outer + inner));
+        settings.window_end = 0;
+        auto const plain = plan_memory(run, settings);
+        CHECK(plain.work.attention_ratio() == 1);
+        CHECK(plain.bytes.bank == 0);
+        CHECK(plain.work.mixed_bytes == 0);
+    }
+    TEST_CASE("the plan's attention is what the denoiser is then asked for") {
+        auto const maps = testing::random_scene(33, 6, {32, 32}, 3);
+        wide_denoiser const phi;
+        for (auto const method : {sampler::euler, sampler::heun}) {
+            for (auto const keeps_own_copy : {true, false}) {
+                auto settings = two_steps();
+                settings.method = method;
+                settings.keeps_own_copy = keeps_own_copy;
+                phi.attention_flops = 0;
+                render_report report;
+                render(phi, to_uv_view(maps), settings, report);
+                auto const plan = plan_memory(describe_run(phi, to_uv_view(maps)), settings);
+                CHECK(plan.work.attention_flops == static_cast<double>(phi.attention_flops));
+            }
+        }
+    }
+    TEST_CASE("the peak is within 10 % of the heap's and grows by what frames take alone") {
+        if (!counted_memory::is_counted) {
+            MESSAGE("the heap is not counted here");
+            return;
+        }
+        auto settings = two_steps();
+        for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
+            settings.method = method;
+            auto const few = compare(24, settings);
+            auto const many = compare(240, settings);
+            MESSAGE("planned ", few.plan.bytes.peak, " and ", many.plan.bytes.peak, " bytes, measured ", few.measured,
+                    " and ", many.measured);
+            CHECK(few.error() < 0.1);
+            CHECK(many.error() < 0.1);
+            auto const planned = static_cast<double>(many.plan.bytes.of_frames() - many.plan.bytes.maps) -
+                                 static_cast<double>(few.plan.bytes.of_frames() - few.plan.bytes.maps);
+            auto const grown = static_cast<double>(many.measured) - static_cast<double>(few.measured);
+            CHECK(grown < 1.1 * planned);
+        }
+        settings.feature_storage = feature_storage::bf16;
+        CHECK(compare(24, settings).error() < 0.1);
+        settings = two_steps();
+        settings.window_end = 0;
+        CHECK(compare(24, settings).error() < 0.1);
+    }
+}
