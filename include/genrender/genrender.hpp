@@ -5,6 +5,7 @@
 
 #include <genrender/core/elementwise.hpp>
 #include <genrender/core/error.hpp>
+#include <genrender/core/exponential.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/parallel.hpp>
@@ -14,6 +15,7 @@
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/tensor.hpp>
+#include <genrender/core/vector_lanes.hpp>
 
 #include <genrender/scene/animation.hpp>
 #include <genrender/scene/bounds.hpp>
@@ -67,14 +69,12 @@
 #include <genrender/attention/attention_scratch.hpp>
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/attention_tile.hpp>
-#include <genrender/attention/exponential.hpp>
 #include <genrender/attention/extended_attention.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/host_features.hpp>
 #include <genrender/attention/key_value_view.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
-#include <genrender/attention/vector_lanes.hpp>
 
 #include <genrender/sampling/classifier_free_guidance.hpp>
 #include <genrender/sampling/denoiser.hpp>

@@ -2,8 +2,8 @@
 // The arithmetic of softmax attention on what fits the nearest cache: some queries, one a vector lane, over some keys.
 #pragma once
 
-#include <genrender/attention/exponential.hpp>
-#include <genrender/attention/vector_lanes.hpp>
+#include <genrender/core/exponential.hpp>
+#include <genrender/core/vector_lanes.hpp>
 
 #include <algorithm>
 #include <cstddef>

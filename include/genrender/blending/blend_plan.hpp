@@ -76,7 +76,7 @@ blend_plan<Real> plan_of_matches(std::span<std::shared_ptr<token_matches const> 
         is_shown.push_back(match->is_shown.data());
     }
     blend_plan<Real> plan;
-    plan.offsets.resize(tokens + 1);
+    plan.offsets.assign(tokens + 1, 0);
     // Entries are written before it is known whether they count, so there is room for one more.
     plan.sources.resize(tokens * keyframes + 1);
     plan.weights.resize(tokens * keyframes + 1);

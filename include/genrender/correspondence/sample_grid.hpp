@@ -157,7 +157,7 @@ private:
                     doubtful |= is_here & (distance <= reach + tolerance) &
                                 (((off_plane > 1 - 10 * tolerance) & (off_plane < 1 + 10 * tolerance)) |
                                  (facing * facing < scale * 1e-6F));
-                    distance = (off_plane > 1) | (facing <= 0) ? far : distance;
+                    distance = ((off_plane > 1) | (facing <= 0)) ? far : distance;
                 } else {
                     auto const measure = [&](std::size_t which) {
                         return detail::load_as<floats>(&of.measures[which][part]);

@@ -68,7 +68,7 @@ public:
             for (auto const& block : sources[i]) {
                 blocks.push_back({rows_of(*block.K, block.frame), rows_of(*block.V, block.frame)});
             }
-            scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads());
+            scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads(), *loop_);
         });
         return F;
     }

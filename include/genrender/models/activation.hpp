@@ -2,8 +2,8 @@
 // The pointwise functions between layers: SiLU and the exact GELU.
 #pragma once
 
-#include <genrender/attention/exponential.hpp>
-#include <genrender/attention/vector_lanes.hpp>
+#include <genrender/core/exponential.hpp>
+#include <genrender/core/vector_lanes.hpp>
 
 #include <algorithm>
 #include <cmath>

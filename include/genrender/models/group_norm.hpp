@@ -2,7 +2,7 @@
 // GroupNorm (Wu and He 2018) of feature maps whose channels lie side by side, and the SiLU that follows it.
 #pragma once
 
-#include <genrender/attention/vector_lanes.hpp>
+#include <genrender/core/vector_lanes.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/models/activation.hpp>

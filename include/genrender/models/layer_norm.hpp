@@ -2,7 +2,7 @@
 // LayerNorm (Ba et al. 2016) of feature maps whose channels lie side by side.
 #pragma once
 
-#include <genrender/attention/vector_lanes.hpp>
+#include <genrender/core/vector_lanes.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/models/activation.hpp>
 #include <genrender/models/weights.hpp>

@@ -2,7 +2,7 @@
 // The matrix product of all layers: weights in panels two registers wide, features read where they lie.
 #pragma once
 
-#include <genrender/attention/vector_lanes.hpp>
+#include <genrender/core/vector_lanes.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/models/feature_memory.hpp>

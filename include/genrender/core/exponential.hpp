@@ -2,7 +2,7 @@
 // 2^x of a whole register: a polynomial on half a unit either side of 0, and the whole part put into the exponent.
 #pragma once
 
-#include <genrender/attention/vector_lanes.hpp>
+#include <genrender/core/vector_lanes.hpp>
 
 #include <cstddef>
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // 2^x beside the standard library's.
-#include <genrender/attention/exponential.hpp>
+#include <genrender/core/exponential.hpp>
 
 #include <doctest/doctest.h>
 
@@ -23,7 +23,7 @@ Real power_of_2(Real x) {
 
 } // namespace
 
-TEST_SUITE("attention/exponential") {
+TEST_SUITE("core/exponential") {
     TEST_CASE_TEMPLATE("it is within an ulp and a half of the standard library over all of its range", Real, float,
                        double) {
         auto const greatest = static_cast<Real>(std::numeric_limits<Real>::max_exponent - 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The register type: what goes in comes out, lane by lane.
-#include <genrender/attention/vector_lanes.hpp>
+#include <genrender/core/vector_lanes.hpp>
 
 #include <doctest/doctest.h>
 
@@ -29,7 +29,7 @@ numbers<Real> counted(Real first) {
 
 } // namespace
 
-TEST_SUITE("attention/vector_lanes") {
+TEST_SUITE("core/vector_lanes") {
     TEST_CASE_TEMPLATE("arithmetic is that of each lane", Real, float, double) {
         auto const a = counted<Real>(1);
         auto const b = counted<Real>(-2);
