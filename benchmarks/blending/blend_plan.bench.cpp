@@ -52,7 +52,7 @@ struct decoder_world {
     std::vector<blend_plan<float>> plans(std::vector<frame_index> const& KF, frame_index i) const {
         std::vector<blend_plan<float>> result;
         for (auto const& map : maps) {
-            result.push_back(make_blend_plan<float>(map, KF, i));
+            result.push_back(make_blend_plan<float>(map, KF, i, 0.5f, texel_average::by_quality));
         }
         return result;
     }

@@ -59,6 +59,7 @@ struct one_by_one {
     std::optional<token_index> token_at(frame_index i, point_type const& point) const {
         return map->token_at(i, point);
     }
+    double quality_at(frame_index i, point_type const& point) const { return map->quality_at(i, point); }
 };
 
 static_assert(matched_correspondence_map<footprint_map<2>>);
@@ -284,21 +285,21 @@ TEST_SUITE("blending/blend_plan") {
             auto const KF = draw_shuffled(seed);
             auto const share = seed % 2 == 0 ? Real(0.5) : Real(0.2);
             for (std::uint32_t i = 0; i < 6; ++i) {
-                auto const expected = make_blend_plan<Real>(single, KF, {i}, share);
                 // The second time from what the first left.
-                for (int time = 0; time < 2; ++time) {
-                    auto const plan = make_blend_plan<Real>(map, KF, {i}, share);
+                for (auto const average : {texel_average::plain, texel_average::by_quality, texel_average::by_quality}) {
+                    auto const expected = make_blend_plan<Real>(single, KF, {i}, share, average);
+                    auto const plan = make_blend_plan<Real>(map, KF, {i}, share, average);
                     CHECK(plan.offsets == expected.offsets);
                     CHECK(plan.sources == expected.sources);
                     REQUIRE(plan.weights.size() == expected.weights.size());
                     for (std::size_t e = 0; e < plan.weights.size(); ++e) {
                         CHECK(plan.weights[e] == doctest::Approx(expected.weights[e]).epsilon(1e-6));
                     }
+                    entries += expected.sources.size();
                 }
-                entries += expected.sources.size();
             }
         }
-        CHECK(entries > 3000);
+        CHECK(entries > 9000);
     }
     TEST_CASE("arguments that do not fit are refused by name") {
         testing::shifted_strip const strip{2, 3};

@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 using namespace genrender;
@@ -42,20 +41,17 @@ footprint_point<2> point_at(float u, float v) {
 } // namespace
 
 TEST_SUITE("correspondence/kept_samples") {
-    TEST_CASE("a token is that of the sample wherever the point lies") {
+    TEST_CASE("a sample is the one that the tree finds wherever the point lies") {
         auto const kept = plane(1);
         std::size_t shown = 0;
         for (int v = -40; v < 300; v += 3) {
             for (int u = -40; u < 300; u += 3) {
                 auto const point =
                     point_at(static_cast<float>(u) / 256 + 0.0007F, static_cast<float>(v) / 256 + 0.0004F);
-                auto const* const sample = kept.sample_at(point);
-                auto const token = kept.token_at(point);
-                REQUIRE(token.has_value() == (sample != nullptr));
-                if (token) {
-                    CHECK(*token == sample->token);
-                    ++shown;
-                }
+                auto const* const sample = kept.sample_by_tree(point);
+                auto const* const found = kept.sample_at(point);
+                REQUIRE(found == sample);
+                shown += found != nullptr ? 1U : 0U;
             }
         }
         CHECK(shown > 6000);
@@ -66,23 +62,26 @@ TEST_SUITE("correspondence/kept_samples") {
         auto const kept = plane(1);
         auto behind = point_at(0.5F, 0.5F);
         std::swap(behind.footprint->across, behind.footprint->down);
-        CHECK_FALSE(kept.token_at(behind).has_value());
+        CHECK(kept.sample_at(behind) == nullptr);
         auto lonely = point_at(0.501F, 0.5F);
         lonely.footprint.reset();
-        CHECK(kept.token_at(lonely) == std::optional(token_index{8 * 16 + 8}));
+        REQUIRE(kept.sample_at(lonely) != nullptr);
+        CHECK(kept.sample_at(lonely)->token == token_index{8 * 16 + 8});
+        CHECK(kept.sample_at(lonely)->quality() == 4096);
     }
 
     TEST_CASE("reach is counted in half cells") {
         // Three pixels beside the last column are 1.5 half cells from it.
         auto const beside = point_at(66.0F / 64, 34.0F / 64);
-        CHECK_FALSE(plane(1).token_at(beside).has_value());
-        CHECK(plane(1.6).token_at(beside) == std::optional(token_index{8 * 16 + 15}));
+        CHECK(plane(1).sample_at(beside) == nullptr);
+        auto const further = plane(1.6);
+        REQUIRE(further.sample_at(beside) != nullptr);
+        CHECK(further.sample_at(beside)->token == token_index{8 * 16 + 15});
     }
 
     TEST_CASE("nothing kept shows nothing") {
         samples_type none;
         none.compile(1, {4, 4}, 1);
-        CHECK_FALSE(none.token_at(point_at(0, 0)).has_value());
         CHECK(none.sample_at(point_at(0, 0)) == nullptr);
     }
 }

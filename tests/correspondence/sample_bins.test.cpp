@@ -46,7 +46,7 @@ TEST_SUITE("correspondence/sample_bins") {
             for (std::size_t row = 0; row < near.row_count; ++row) {
                 for (auto at = near.rows[row].begin; at < near.rows[row].end; ++at) {
                     held.push_back(static_cast<std::uint32_t>(
-                        bins.packs()[at / sample_pack<2>::size].tokens[at % sample_pack<2>::size]));
+                        bins.packs()[at / sample_pack<2>::size].numbers[at % sample_pack<2>::size]));
                 }
             }
             CHECK(held.size() == near.count);
@@ -54,7 +54,7 @@ TEST_SUITE("correspondence/sample_bins") {
             CHECK(std::adjacent_find(held.begin(), held.end()) == held.end());
             for (auto const& other : samples) {
                 if (std::hypot(other.place[0] - s.place[0], other.place[1] - s.place[1]) < border) {
-                    CHECK(std::binary_search(held.begin(), held.end(), other.token));
+                    CHECK(std::binary_search(held.begin(), held.end(), other.number));
                 }
             }
         }

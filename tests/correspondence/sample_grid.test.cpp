@@ -52,7 +52,7 @@ grid_sample<D> sheet_sample(std::size_t side, double row, double column, bool is
 
 /// footprint_map's definition, in double precision and by way of the tree.
 template <std::size_t D>
-std::optional<std::uint32_t> token_by_tree(sample_tree<D> const& tree, std::vector<grid_sample<D>> const& samples,
+std::optional<std::uint32_t> number_by_tree(sample_tree<D> const& tree, std::vector<grid_sample<D>> const& samples,
                                            grid_sample<D> const& asked, double reach, double rows, double columns) {
     std::optional<std::pair<double, std::uint32_t>> closest;
     tree.visit_nearest(asked.place, [&](std::size_t number) {
@@ -68,7 +68,7 @@ std::optional<std::uint32_t> token_by_tree(sample_tree<D> const& tree, std::vect
         auto const distance =
             s.place == asked.place ? 0 : std::max(std::abs(offset.down) / rows, std::abs(offset.right) / columns) * 2;
         if (distance <= reach) {
-            std::pair const found(distance, s.token);
+            std::pair const found(distance, s.number);
             closest = closest ? std::min(*closest, found) : found;
         }
     });
@@ -99,13 +99,13 @@ tally compare(std::vector<grid_sample<D>> const& samples, std::size_t side, doub
         auto const column = (1.6 * uniform(1, number, 1) - 0.3) * static_cast<double>(side);
         auto const asked = sheet_sample<D>(side, row, column, number % 7 == 0);
         auto const answer = grid.find(asked.place, *asked.footprint);
-        auto const expected = token_by_tree(tree, samples, asked, reach, rows, columns);
+        auto const expected = number_by_tree(tree, samples, asked, reach, rows, columns);
         if (answer.is == verdict::unsure) {
             ++count.unsure;
         } else if (answer.is == verdict::shown) {
             ++count.shown;
             REQUIRE(expected.has_value());
-            CHECK(answer.token == *expected);
+            CHECK(answer.number == *expected);
         } else {
             ++count.not_shown;
             CHECK_FALSE(expected.has_value());
@@ -114,14 +114,14 @@ tally compare(std::vector<grid_sample<D>> const& samples, std::size_t side, doub
     return count;
 }
 
-/// All pixels of the sheet, in cells of 4 x 4.
+/// All pixels of the sheet.
 template <std::size_t D>
 std::vector<grid_sample<D>> sheet(std::size_t side) {
     std::vector<grid_sample<D>> samples;
     for (std::size_t row = 0; row < side; ++row) {
         for (std::size_t column = 0; column < side; ++column) {
             auto s = sheet_sample<D>(side, static_cast<double>(row), static_cast<double>(column));
-            s.token = static_cast<std::uint32_t>(row / 4 * (side / 4) + column / 4);
+            s.number = static_cast<std::uint32_t>(row * side + column);
             samples.push_back(s);
         }
     }
@@ -157,12 +157,12 @@ TEST_SUITE("correspondence/sample_grid") {
         for (std::size_t n = 0; n < samples.size(); n += 97) {
             samples[n].footprint.reset();
         }
-        // The same sheet again in other tokens, and one that faces the other way.
+        // The same sheet again with other numbers, and one that faces the other way.
         for (auto s : sheet<D::value>(32)) {
-            s.token += 1000;
-            if (s.token % 3 == 0) {
+            s.number += 5000;
+            if (s.number % 3 == 0) {
                 samples.push_back(s);
-            } else if (s.token % 3 == 1 && s.footprint) {
+            } else if (s.number % 3 == 1 && s.footprint) {
                 std::swap(s.footprint->across, s.footprint->down);
                 samples.push_back(s);
             }

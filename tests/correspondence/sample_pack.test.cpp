@@ -22,7 +22,7 @@ TEST_SUITE("correspondence/sample_pack") {
         // Cells of 4 rows and 8 columns; a pixel is 1/2 wide and 1/4 high.
         sample_pack<2> pack;
         pack.set(3, {7, {1, 2}, surface_footprint<2>{{0.5F, 0}, {0, 0.25F}}}, 4, 8);
-        CHECK(pack.tokens[3] == 7);
+        CHECK(pack.numbers[3] == 7);
         CHECK(pack.places[0][3] == 1);
         CHECK(pack.places[1][3] == 2);
         CHECK(pack.measures[0][3] == 0.5F); // 2 pixels a unit, 4 pixels a half cell

@@ -121,6 +121,7 @@ TEST_SUITE("correspondence/surface_correspondence") {
             auto const token = point ? map.token_at({2}, *point) : std::nullopt;
             REQUIRE((matches->is_shown[t] != 0) == token.has_value());
             CHECK(matches->tokens[t] == (token ? token->value : 0));
+            CHECK(matches->qualities[t] == (point ? map.quality_at({2}, *point) : 0));
             shown += token ? 1U : 0U;
         }
         CHECK(shown > 30);

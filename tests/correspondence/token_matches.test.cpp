@@ -14,7 +14,12 @@ using namespace genrender;
 
 namespace {
 
-token_matches matches_of(std::uint32_t token) { return {{token, 0}, {1, 0}}; }
+token_matches matches_of(std::uint32_t token) {
+    token_matches matches(2);
+    matches.tokens[0] = token;
+    matches.is_shown[0] = 1;
+    return matches;
+}
 
 } // namespace
 

@@ -49,7 +49,7 @@ enum class texel_average : std::uint8_t {
 };
 
 /// A correspondence_map that answers for all tokens of a frame at once: `map.matches(from, to)` holds what
-/// `map.token_at(to, *map.point_at(from, t))` is for every token t, or is null where there is more to say than that.
+/// `map.token_at(to, *map.point_at(from, t))` and quality_at are for every token t, or is null where there is more to say than that.
 template <class Map>
 concept matched_correspondence_map = correspondence_map<Map> && requires(Map const& map, frame_index i) {
     { map.matches(i, i) } -> std::same_as<std::shared_ptr<token_matches const>>;
@@ -57,23 +57,24 @@ concept matched_correspondence_map = correspondence_map<Map> && requires(Map con
 
 namespace detail {
 
-/// The plan of keyframes that are alike, from their matches.
+/// The plan from matches in each keyframe.
 template <class Real>
-blend_plan<Real> plan_of_matches(std::span<std::shared_ptr<token_matches const> const> matches, Real first_fill_share) {
+blend_plan<Real> plan_of_matches(std::span<std::shared_ptr<token_matches const> const> matches, Real first_fill_share,
+                                 texel_average average) {
     auto const keyframes = matches.size();
     auto const tokens = matches[0]->tokens.size();
-    // The weights of the keyframes by how many see a point: of the first that does, and of each other.
-    std::vector<std::array<Real, 2>> weights(keyframes + 1);
+    // The average's weights of keyframes that are alike, by how many see a point.
+    std::vector<Real> alike(keyframes + 1);
     for (std::size_t seen = 1; seen <= keyframes; ++seen) {
-        auto const average = average_weight<Real>(seen);
-        weights[seen] = {unified_weight<Real>(0, average, first_fill_share),
-                         unified_weight<Real>(1, average, first_fill_share)};
+        alike[seen] = average_weight<Real>(seen);
     }
     std::vector<std::uint32_t const*> token;
     std::vector<std::uint8_t const*> is_shown;
+    std::vector<double const*> quality;
     for (auto const& match : matches) {
         token.push_back(match->tokens.data());
         is_shown.push_back(match->is_shown.data());
+        quality.push_back(match->qualities.data());
     }
     blend_plan<Real> plan;
     plan.offsets.assign(tokens + 1, 0);
@@ -83,13 +84,17 @@ blend_plan<Real> plan_of_matches(std::span<std::shared_ptr<token_matches const> 
     std::size_t entries = 0;
     for (std::size_t t = 0; t < tokens; ++t) {
         std::size_t seen = 0;
+        double sum = 0;
         for (std::size_t k = 0; k < keyframes; ++k) {
             seen += is_shown[k][t];
+            sum += quality[k][t];
         }
+        auto const is_graded = average == texel_average::by_quality && sum > 0;
         auto const first = entries;
-        for (std::size_t k = 0; k < keyframes; ++k) {
+        for (std::size_t k = 0; k < keyframes && seen > 0; ++k) {
+            auto const share = is_graded ? static_cast<Real>(quality[k][t] / sum) : alike[seen];
             plan.sources[entries] = static_cast<std::uint32_t>(k * tokens) + token[k][t];
-            plan.weights[entries] = weights[seen][entries == first ? 0 : 1];
+            plan.weights[entries] = unified_weight<Real>(entries - first, share, first_fill_share);
             entries += is_shown[k][t];
         }
         plan.offsets[t + 1] = static_cast<std::uint32_t>(entries);
@@ -119,13 +124,11 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
 
     if constexpr (matched_correspondence_map<Map>) {
         std::vector<std::shared_ptr<token_matches const>> matches;
-        if (average == texel_average::plain) {
-            for (auto const keyframe : keyframes) {
-                matches.push_back(map.matches(i, keyframe));
-            }
+        for (auto const keyframe : keyframes) {
+            matches.push_back(map.matches(i, keyframe));
         }
-        if (!matches.empty() && matches[0] != nullptr) {
-            return detail::plan_of_matches<Real>(matches, first_fill_share);
+        if (matches[0] != nullptr) {
+            return detail::plan_of_matches<Real>(matches, first_fill_share, average);
         }
     }
 

@@ -68,7 +68,8 @@ public:
     /// The token whose cell shows the point in that frame: of the kept pixels the closest on the screen, ties by lowest
     /// token.
     std::optional<token_index> token_at(frame_index frame, point_type const& point) const {
-        return token_in(frames_[frame.value], point);
+        auto const* const found = sample_in(frames_[frame.value], point);
+        return found != nullptr ? std::optional(found->token) : std::nullopt;
     }
 
     /// The same for the points of all tokens of another frame. What was asked once is kept, see
@@ -80,10 +81,8 @@ public:
     /// How well a frame shows a point, for averages over keyframes: the share of the cell that the point's object owns
     /// times how many of the frame's pixels a unit of surface fills; 0 where the frame does not show it.
     double quality_at(frame_index frame, point_type const& point) const {
-        auto const& objects = frames_[frame.value].of_object;
-        auto const kept = objects.find(point.object);
-        auto const* const found = kept != objects.end() ? kept->second.sample_at(point) : nullptr;
-        return found != nullptr ? double{found->purity} * found->density : 0;
+        auto const* const found = sample_in(frames_[frame.value], point);
+        return found != nullptr ? found->quality() : 0;
     }
 
 private:
@@ -174,21 +173,21 @@ private:
 
     token_matches match(frame_entry const& from, frame_entry const& to) const {
         auto const tokens = grid_.size();
-        token_matches result{std::vector<std::uint32_t>(tokens), std::vector<std::uint8_t>(tokens)};
+        token_matches result(tokens);
         for (std::size_t t = 0; t < tokens; ++t) {
-            if (auto const& point = from.shown[t]) {
-                if (auto const token = token_in(to, *point)) {
-                    result.tokens[t] = token->value;
-                    result.is_shown[t] = 1;
-                }
+            auto const& point = from.shown[t];
+            if (auto const* const found = point ? sample_in(to, *point) : nullptr) {
+                result.tokens[t] = found->token.value;
+                result.is_shown[t] = 1;
+                result.qualities[t] = found->quality();
             }
         }
         return result;
     }
 
-    static std::optional<token_index> token_in(frame_entry const& frame, point_type const& point) {
+    static typename kept_samples<D>::sample const* sample_in(frame_entry const& frame, point_type const& point) {
         auto const found = frame.of_object.find(point.object);
-        return found != frame.of_object.end() ? found->second.token_at(point) : std::nullopt;
+        return found != frame.of_object.end() ? found->second.sample_at(point) : nullptr;
     }
 
     grid_extents grid_;

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -39,6 +40,9 @@ public:
         std::array<float, D> place{};
         std::optional<surface_footprint<D>> footprint;
         double density = 0; ///< pixels a unit of canonical area
+
+        /// How well the frame shows what the sample shows: purity times density.
+        double quality() const { return double{purity} * density; }
     };
 
     void add(sample const& s) { samples_.push_back(s); }
@@ -51,29 +55,29 @@ public:
         width_ = static_cast<double>(cell.width);
         std::vector<std::array<float, D>> places;
         std::vector<grid_sample<D>> for_grid;
+        for_grid.reserve(samples_.size());
         for (auto const& s : samples_) {
             places.push_back(s.place);
-            for_grid.push_back({s.token.value, s.place, s.footprint});
+            for_grid.push_back({static_cast<std::uint32_t>(for_grid.size()), s.place, s.footprint});
         }
         tree_ = sample_tree<D>(std::move(places));
         grid_ = sample_grid<D>(for_grid, reach, height_, width_, spacing);
     }
 
-    /// The token that shows a point.
-    std::optional<token_index> token_at(point_type const& point) const {
+    /// The sample that shows a point; null if none does.
+    sample const* sample_at(point_type const& point) const {
         if (point.footprint) {
             using verdict = typename sample_grid<D>::verdict;
             auto const answer = grid_.find(point.place, *point.footprint);
             if (answer.is != verdict::unsure) {
-                return answer.is == verdict::shown ? std::optional(token_index{answer.token}) : std::nullopt;
+                return answer.is == verdict::shown ? &samples_[answer.number] : nullptr;
             }
         }
-        auto const* const found = sample_at(point);
-        return found != nullptr ? std::optional(found->token) : std::nullopt;
+        return sample_by_tree(point);
     }
 
-    /// The sample that shows a point; null if none does.
-    sample const* sample_at(point_type const& point) const {
+    /// The same in double precision, without the grid.
+    sample const* sample_by_tree(point_type const& point) const {
         sample const* closest = nullptr;
         double closest_distance = 0;
         tree_.visit_nearest(point.place, [&](std::size_t number) {

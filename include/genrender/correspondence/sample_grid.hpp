@@ -17,15 +17,15 @@
 
 namespace genrender {
 
-/// Which token of a frame shows a point, of all that sample_tree's nearest few say the one closest on the screen, where
-/// single precision is enough to be sure of it. The rest it leaves to who asks.
+/// Which kept pixel of a frame shows a point: of sample_tree's nearest few the one closest on the screen, where single
+/// precision is enough to be sure of it. The rest it leaves to who asks.
 template <std::size_t D>
 class sample_grid {
 public:
     enum class verdict : std::uint8_t { shown, not_shown, unsure };
     struct answer {
         verdict is;
-        std::uint32_t token;
+        std::uint32_t number; ///< of the pixel that shows it
     };
 
     sample_grid() = default;
@@ -34,7 +34,7 @@ public:
     sample_grid(std::vector<grid_sample<D>> const& samples, double reach, double rows, double columns, double spacing)
         : bins_(samples, reach, rows, columns, spacing) {}
 
-    /// The token that shows a point which was seen with a footprint.
+    /// The pixel that shows a point which was seen with a footprint.
     answer find([[maybe_unused]] std::array<float, D> const& place,
                 [[maybe_unused]] surface_footprint<D> const& footprint) const {
 #if defined(__GNUC__)
@@ -110,7 +110,7 @@ private:
         constexpr auto capacity = 2 * (most / lanes + block::most_rows) + 2 * pack::size;
         std::array<floats, capacity> squares;
         std::array<floats, capacity> distances;
-        std::array<std::int32_t const*, capacity> tokens;
+        std::array<std::int32_t const*, capacity> numbers;
         std::size_t used = 0;
         whole lane{};
         for (std::size_t n = 0; n < lanes; ++n) {
@@ -171,7 +171,7 @@ private:
                 inside -= square <= border_square;
                 squares[used] = square;
                 distances[used] = distance;
-                tokens[used] = &of.tokens[part];
+                numbers[used] = &of.numbers[part];
                 ++used;
             }
         }
@@ -192,22 +192,22 @@ private:
             return {verdict::unsure, 0};
         }
 
-        // Again over those that are as close: all of one token, and one of them among the nearest few.
+        // Again over those that are as close: there must be one alone, and it among the nearest few.
         whole lowest = whole{} + std::numeric_limits<std::int32_t>::max();
         whole highest{};
         floats nearest = far;
         for (std::size_t n = 0; n < used; ++n) {
             auto const is_close = distances[n] <= best + tolerance;
-            auto const token = detail::load_as<whole>(tokens[n]);
-            auto const or_greatest = is_close ? token : lowest;
-            auto const or_least = is_close ? token : highest;
+            auto const number = detail::load_as<whole>(numbers[n]);
+            auto const or_greatest = is_close ? number : lowest;
+            auto const or_least = is_close ? number : highest;
             lowest = or_greatest < lowest ? or_greatest : lowest;
             highest = or_least > highest ? or_least : highest;
             auto const or_far = is_close ? squares[n] : far;
             nearest = or_far < nearest ? or_far : nearest;
         }
-        auto const token = folded(lowest, least);
-        if (token != folded(highest, greatest)) {
+        auto const number = folded(lowest, least);
+        if (number != folded(highest, greatest)) {
             return {verdict::unsure, 0};
         }
         auto const radius = folded(nearest, least) * (1 + square_tolerance);
@@ -217,7 +217,7 @@ private:
         }
         return {folded(nearer, sum) <= static_cast<std::int32_t>(sample_tree<D>::visited) ? verdict::shown
                                                                                           : verdict::unsure,
-                static_cast<std::uint32_t>(token)};
+                static_cast<std::uint32_t>(number)};
     }
 #endif
 

@@ -16,10 +16,16 @@ namespace genrender {
 
 /// For every token of one frame, the token of another frame that shows the same surface point.
 struct token_matches {
-    std::vector<std::uint32_t> tokens; ///< 0 where is_shown is
-    std::vector<std::uint8_t> is_shown;
+    std::vector<std::uint32_t> tokens;   ///< 0 where none does
+    std::vector<std::uint8_t> is_shown;  ///< 1 where one does
+    std::vector<double> qualities;       ///< how well, see graded_correspondence_map; 0 where none does
 
-    std::size_t byte_count() const { return sizeof(*this) + tokens.size() * (sizeof(std::uint32_t) + 1); }
+    /// None for any token.
+    explicit token_matches(std::size_t count) : tokens(count), is_shown(count), qualities(count) {}
+
+    std::size_t byte_count() const {
+        return sizeof(*this) + tokens.size() * (sizeof(std::uint32_t) + sizeof(std::uint8_t) + sizeof(double));
+    }
 };
 
 /// Matches of pairs of frames, which never change in a run and are asked for again whenever a frame is drawn as a
