@@ -286,7 +286,8 @@ TEST_SUITE("blending/blend_plan") {
             auto const share = seed % 2 == 0 ? Real(0.5) : Real(0.2);
             for (std::uint32_t i = 0; i < 6; ++i) {
                 // The second time from what the first left.
-                for (auto const average : {texel_average::plain, texel_average::by_quality, texel_average::by_quality}) {
+                for (auto const average :
+                     {texel_average::plain, texel_average::by_quality, texel_average::by_quality}) {
                     auto const expected = make_blend_plan<Real>(single, KF, {i}, share, average);
                     auto const plan = make_blend_plan<Real>(map, KF, {i}, share, average);
                     CHECK(plan.offsets == expected.offsets);

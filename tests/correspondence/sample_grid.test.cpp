@@ -53,7 +53,7 @@ grid_sample<D> sheet_sample(std::size_t side, double row, double column, bool is
 /// footprint_map's definition, in double precision and by way of the tree.
 template <std::size_t D>
 std::optional<std::uint32_t> number_by_tree(sample_tree<D> const& tree, std::vector<grid_sample<D>> const& samples,
-                                           grid_sample<D> const& asked, double reach, double rows, double columns) {
+                                            grid_sample<D> const& asked, double reach, double rows, double columns) {
     std::optional<std::pair<double, std::uint32_t>> closest;
     tree.visit_nearest(asked.place, [&](std::size_t number) {
         auto const& s = samples[number];

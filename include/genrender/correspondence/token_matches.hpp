@@ -16,9 +16,9 @@ namespace genrender {
 
 /// For every token of one frame, the token of another frame that shows the same surface point.
 struct token_matches {
-    std::vector<std::uint32_t> tokens;   ///< 0 where none does
-    std::vector<std::uint8_t> is_shown;  ///< 1 where one does
-    std::vector<double> qualities;       ///< how well, see graded_correspondence_map; 0 where none does
+    std::vector<std::uint32_t> tokens;  ///< 0 where none does
+    std::vector<std::uint8_t> is_shown; ///< 1 where one does
+    std::vector<double> qualities;      ///< how well, see graded_correspondence_map; 0 where none does
 
     /// None for any token.
     explicit token_matches(std::size_t count) : tokens(count), is_shown(count), qualities(count) {}
