@@ -10,7 +10,8 @@ sh cmake/quickstart.sh WHAT
   demo      render an animation with the built-in network, and the same frame by frame   (build/demo_output)
   evaluate  the paper's tables on the built-in network: every method, baseline and ablation (build/evaluation);
             with --quick one prompt and one seed, with other options those of the program evaluate
-  test      everything that continuous integration checks: g++, clang++ with sanitizers, headers, package
+  test      everything that continuous integration checks: g++, clang++ with sanitizers, this machine's vectors,
+            headers, package
   bench     every benchmark beside its floor and its target, as one table (build/bench/benchmarks.md and .json); PyTorch
             and NumPy too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them
   packages  install the Debian packages that demo, evaluate, test and bench need, and do no more
@@ -107,6 +108,7 @@ run_tests() {
     workflow test
     workflow asan
     workflow tsan
+    workflow native
     say "All tests passed"
 }
 
