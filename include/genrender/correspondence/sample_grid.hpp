@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -48,7 +49,9 @@ public:
                 if (near.count > most || near.row_count > block::most_rows) {
                     break;
                 }
-                return judge(near, place, footprint);
+                if (auto const judged = judge(near, place, footprint)) {
+                    return *judged;
+                }
             }
         }
 #endif
@@ -86,7 +89,9 @@ private:
         }
     }
 
-    answer judge(block const& near, std::array<float, D> const& place, surface_footprint<D> const& footprint) const {
+    /// None if the nearest few may lie outside of the block, which a larger one tells.
+    std::optional<answer> judge(block const& near, std::array<float, D> const& place,
+                                surface_footprint<D> const& footprint) const {
         constexpr auto infinity = std::numeric_limits<float>::infinity();
         auto const reach = bins_.reach();
         // Nearer than this are no pixels but those of the block.
@@ -181,15 +186,18 @@ private:
         auto const greatest = [](auto a, auto b) { return a > b ? a : b; };
         auto const nearest_few_are_here =
             near.is_everything || folded(inside, sum) >= static_cast<std::int32_t>(sample_tree<D>::visited);
-        if (!nearest_few_are_here || folded(doubtful, any) != 0) {
-            return {verdict::unsure, 0};
+        if (!nearest_few_are_here) {
+            return std::nullopt;
+        }
+        if (folded(doubtful, any) != 0) {
+            return answer{verdict::unsure, 0};
         }
         auto const best = folded(closest, least);
         if (best > reach + tolerance) {
-            return {verdict::not_shown, 0};
+            return answer{verdict::not_shown, 0};
         }
         if (!(best < reach - tolerance)) {
-            return {verdict::unsure, 0};
+            return answer{verdict::unsure, 0};
         }
 
         // Again over those that are as close: there must be one alone, and it among the nearest few.
@@ -208,16 +216,16 @@ private:
         }
         auto const number = folded(lowest, least);
         if (number != folded(highest, greatest)) {
-            return {verdict::unsure, 0};
+            return answer{verdict::unsure, 0};
         }
         auto const radius = folded(nearest, least) * (1 + square_tolerance);
         whole nearer{};
         for (std::size_t n = 0; n < used; ++n) {
             nearer -= squares[n] <= radius;
         }
-        return {folded(nearer, sum) <= static_cast<std::int32_t>(sample_tree<D>::visited) ? verdict::shown
-                                                                                          : verdict::unsure,
-                static_cast<std::uint32_t>(number)};
+        return answer{folded(nearer, sum) <= static_cast<std::int32_t>(sample_tree<D>::visited) ? verdict::shown
+                                                                                                : verdict::unsure,
+                      static_cast<std::uint32_t>(number)};
     }
 #endif
 
