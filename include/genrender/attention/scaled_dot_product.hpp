@@ -22,17 +22,6 @@ namespace genrender {
 
 namespace detail {
 
-/// The view itself if its rows are contiguous, else a copy of it in `storage`.
-template <class Real>
-strided_view<Real const, 2> with_contiguous_rows(strided_view<Real const, 2> view, stack<Real, 2>& storage) {
-    if (view.rows_are_contiguous()) {
-        return view;
-    }
-    storage = stack<Real, 2>(view.extents());
-    copy(storage.view(), view);
-    return storage.view();
-}
-
 /// Calls body(tile, first, count) for tiles that cover `queries`, one memory after the other: full ones, and at the end
 /// narrow ones where they are less work.
 template <class Real, class Body>

@@ -23,6 +23,21 @@
 
 namespace genrender {
 
+namespace detail {
+
+/// The view itself if its rows are contiguous, else a copy of it in `storage`.
+template <class Real>
+strided_view<Real const, 2> with_contiguous_rows(strided_view<Real const, 2> view, stack<Real, 2>& storage) {
+    if (view.rows_are_contiguous()) {
+        return view;
+    }
+    storage = stack<Real, 2>(view.extents());
+    copy(storage.view(), view);
+    return storage.view();
+}
+
+} // namespace detail
+
 /// diffusers' BasicTransformerBlock: h += attn1(norm1(h)), h += attn2(norm2(h), prompt), h += ff(norm3(h)).
 template <class Real>
 class transformer_block {
