@@ -43,7 +43,7 @@ file(GLOB peers ${CMAKE_CURRENT_LIST_DIR}/peers/*.py)
 foreach(peer IN LISTS peers)
     cmake_path(GET peer STEM name)
     say("peer ${name}")
-    execute_process(COMMAND ${python} ${peer} TIMEOUT 240
+    execute_process(COMMAND ${python} -B ${peer} TIMEOUT 240
         RESULT_VARIABLE code OUTPUT_FILE ${results}/peers/${name}.json ERROR_VARIABLE error)
     if(NOT code EQUAL 0)
         # The last line of a traceback is the one that tells, if it came to one.

@@ -12,8 +12,8 @@ sh cmake/quickstart.sh WHAT
             with --quick one prompt and one seed, with other options those of the program evaluate
   test      everything that continuous integration checks: g++, clang++ with sanitizers, this machine's vectors,
             headers, package
-  bench     every benchmark beside its floor and its target, as one table (build/bench/benchmarks.md and .json); PyTorch
-            and NumPy too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them
+  bench     every benchmark beside its floor and its target, as one table (build/bench/benchmarks.md and .json); PyTorch,
+            NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them
   packages  install the Debian packages that demo, evaluate, test and bench need, and do no more
 
 Packages that are missing are installed with apt-get; nothing is downloaded when all are there.

@@ -34,12 +34,12 @@ constexpr std::size_t keyframes = 5;
 
 /// The maps of an animation, and features to apply plans to.
 struct decoder_world {
+    turning_world world;
     std::vector<footprint_map<2>> maps;
     std::vector<stack<float, 2>> F;
     std::vector<stack<float, 3>> F_KF;
 
-    decoder_world(std::size_t frames, footprint_map_settings const& settings) {
-        turning_world const world(frames);
+    decoder_world(std::size_t frames, footprint_map_settings const& settings) : world(frames) {
         for (auto const& [side, channels] : resolutions) {
             maps.emplace_back(world.uv(), grid_extents{side, side}, settings);
             F.emplace_back(std::array{side * side, channels});

@@ -40,8 +40,8 @@ void match(benchmark::State& state, Map const& map) {
         frame_index const from{turn % frames};
         frame_index const to{(turn / frames + turn) % frames};
         ++turn;
-        auto const matches = map.matches(from, to);
-        benchmark::DoNotOptimize(matches->tokens.data());
+        auto const matches = map.matches(from, {&to, 1});
+        benchmark::DoNotOptimize(matches[0]->tokens.data());
     }
     for (std::uint32_t t = 0; t < map.grid().size(); ++t) {
         on_objects += map.point_at({0}, {t}) ? 1U : 0U;

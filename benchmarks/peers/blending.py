@@ -1,34 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Times PyTorch and NumPy on what benchmarks/blending and benchmarks/normalization time.
 
-Prints a list of {"name", "peer", "seconds"}. Needs PyTorch and NumPy. Blending is done twice: by gathering the sources of
-each token, which is the library's plan, and by way of a dense texture as the paper describes it.
+Needs PyTorch and NumPy. Blending is done twice: by gathering the sources of each token, which is the library's plan,
+and by way of a dense texture as the paper describes it.
 """
-
-import argparse
-import json
-import re
-import statistics
-import time
 
 import numpy
 import torch
 
+from support.peer_times import peer_times, pytorch_name
+
 KEYFRAMES = 5
 SOURCES = 4  # of a token, about as many as in the benchmark's scene
 ALPHA = 0.7
-
-
-def median_seconds(body, at_least, warm_ups=2):
-    """Runs `body` to warm up, then for `at_least` seconds and three times; once alone where it takes longer than that."""
-    for _ in range(warm_ups):
-        body()
-    times = []
-    while len(times) < 3 and sum(times) < 10 * at_least or sum(times) < at_least:
-        start = time.perf_counter()
-        body()
-        times.append(time.perf_counter() - start)
-    return statistics.median(times)
 
 
 def mix(tokens, channels, stored):
@@ -47,7 +31,7 @@ def mix(tokens, channels, stored):
 
 
 def dense_texture(tokens, channels, texels):
-    """Every keyframe written to the texels of its tokens' squares, their mean and first fill, and the frame's tokens read."""
+    """Keyframes written to the texels of their tokens' squares, mean and first fill, a frame's tokens read."""
     side = int(round(tokens**0.5))
     F = torch.randn(tokens, channels)
     F_KF = torch.randn(KEYFRAMES, tokens, channels)
@@ -94,29 +78,22 @@ def normalize(frames, latents):
 
 @torch.inference_mode()
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=0.5, help="least time of a case")
-    parser.add_argument("--filter", default="", help="a regular expression, as that of Google Benchmark")
-    arguments = parser.parse_args()
-
+    times = peer_times(__doc__)
     torch.set_num_threads(1)
-    of_torch = f"PyTorch {torch.__version__.split('+')[0]}"
-    results = []
 
     def measure(name, peer, make, warm_ups=2):
-        if re.search(arguments.filter, name):
-            seconds = median_seconds(make(), arguments.seconds, warm_ups)
-            results.append({"name": name, "peer": peer, "seconds": seconds})
+        if times.wants(name):
+            times.add(name, peer, make(), warm_ups=warm_ups)
 
     for tokens, channels in ((4096, 320), (1024, 640), (256, 1280), (64, 1280)):
         for kind, stored in (("float", torch.float32), ("float16", torch.float16), ("bfloat16", torch.bfloat16)):
             shape = f"tokens:{tokens}/channels:{channels}"
-            measure(f"mix<{kind}>/{shape}", of_torch, lambda: mix(tokens, channels, stored))
-    measure("dense_texture/tokens:4096/channels:320/texels:1024/iterations:1", of_torch,
+            measure(f"mix<{kind}>/{shape}", pytorch_name(), lambda: mix(tokens, channels, stored))
+    measure("dense_texture/tokens:4096/channels:320/texels:1024/iterations:1", pytorch_name(),
             lambda: dense_texture(4096, 320, 1024), warm_ups=0)
     for frames in (24, 1000):
         measure(f"normalize/frames:{frames}/latents:64", f"NumPy {numpy.__version__}", lambda: normalize(frames, 64))
-    print(json.dumps(results, indent=2))
+    times.print()
 
 
 if __name__ == "__main__":

@@ -176,6 +176,18 @@ inline std::string words(std::string const& name) {
 
 inline void append(std::string& list, std::string const& item) { list += (list.empty() ? "" : "; ") + item; }
 
+/// A counter and its name, which may tell its unit: `held_bytes` is `held 63.2 MB`, `network_seconds` `network 4.60 s`.
+inline std::string counter_text(std::string const& name, double value) {
+    auto const before = [&name](std::string const& unit) { return words(name.substr(0, name.size() - unit.size())); };
+    if (name.ends_with("_bytes")) {
+        return before("_bytes") + " " + with_unit(value, std::array{"B", "kB", "MB", "GB", "TB"});
+    }
+    if (name.ends_with("_seconds")) {
+        return before("_seconds") + " " + time_text(value);
+    }
+    return words(name) + " " + three_digits(value);
+}
+
 /// Bytes and FLOPs a second, then every other counter but the share of the floor.
 inline std::string rate_text(measurement const& of) {
     std::string text;
@@ -188,7 +200,7 @@ inline std::string rate_text(measurement const& of) {
     }
     for (auto const& [name, value] : of.counters) {
         if (name != "bytes_per_second" && name != "FLOP/s" && name != "share_of_floor" && name != "items_per_second") {
-            append(text, words(name) + " " + three_digits(value));
+            append(text, counter_text(name, value));
         }
     }
     return text;
@@ -197,6 +209,24 @@ inline std::string rate_text(measurement const& of) {
 inline std::string verdict_text(verdict const& v) {
     return std::string(v.is_met() ? "met" : "missed") + ": " + three_digits(v.value) + (v.is_least ? " ≥ " : " ≤ ") +
            three_digits(v.limit) + ", " + words(v.measure);
+}
+
+/// How each peer did in all cases that it ran, in the order of their names.
+inline std::vector<std::string> peer_texts(std::span<judged_case const> cases) {
+    std::map<std::string, std::vector<double>> ratios;
+    for (auto const& c : cases) {
+        for (auto const& beside : c.peers) {
+            ratios[beside.peer].push_back(beside.ratio);
+        }
+    }
+    std::vector<std::string> texts;
+    for (auto const& [peer, of] : ratios) {
+        auto const faster = std::count_if(of.begin(), of.end(), [](double ratio) { return ratio > 1; });
+        auto const [least, greatest] = std::minmax_element(of.begin(), of.end());
+        texts.push_back(peer + ": faster in " + std::to_string(faster) + " of " + std::to_string(of.size()) +
+                        " cases, ratios " + three_digits(*least) + " to " + three_digits(*greatest));
+    }
+    return texts;
 }
 
 inline std::string row_text(judged_case const& c) {
@@ -246,6 +276,7 @@ inline std::string markdown_table(judged_results const& judged, machine const& o
             text += heading + item + "\n";
         }
     };
+    list("- Beside ", detail::peer_texts(judged.cases));
     list("- Not measured: ", judged.unmeasured);
     list("- A peer's case that we have not: ", judged.unmatched);
     for (auto const& [peer, why] : judged.missing) {

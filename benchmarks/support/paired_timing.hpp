@@ -28,25 +28,33 @@ double seconds_of(Body&& body) {
 }
 
 /// Times `kernel` and `floor` in turn until Google Benchmark has enough, and reports the kernel's time, `share_of_floor`
-/// (the median over the turns of the floor's time for the kernel's whole work over the kernel's time: 1 is as fast as
-/// the floor) and the floor's name as label. A floor that takes longer than the kernel takes its turn only now and then,
-/// so that it has half of the time and not all of it. The benchmark must be registered with UseManualTime().
+/// (the median over the floor's turns of its time for the kernel's whole work over the median time of the kernels until
+/// its next turn: 1 is as fast as the floor) and the floor's name as label. A floor that takes longer than the kernel
+/// takes its turn only now and then, so that it has half of the time and not all of it. The benchmark must be registered
+/// with UseManualTime().
 template <class Kernel, class Floor>
 void time_against(benchmark::State& state, floor_of const& floor_is, Kernel&& kernel, Floor&& floor) {
     std::vector<double> ratios;
+    std::vector<double> kernels; // since the floor's last turn
     double kernel_sum = 0;
     double floor_sum = 0;
     double floor_seconds = 0;
+    auto const end_turn = [&] {
+        if (!kernels.empty()) {
+            ratios.push_back(floor_seconds / floor_is.share / median(std::exchange(kernels, {})));
+        }
+    };
     for (auto _ : state) {
         if (floor_sum <= kernel_sum) {
+            end_turn();
             floor_seconds = seconds_of(floor);
             floor_sum += floor_seconds;
         }
-        auto const kernel_seconds = seconds_of(kernel);
-        kernel_sum += kernel_seconds;
-        state.SetIterationTime(kernel_seconds);
-        ratios.push_back(floor_seconds / floor_is.share / kernel_seconds);
+        kernels.push_back(seconds_of(kernel));
+        kernel_sum += kernels.back();
+        state.SetIterationTime(kernels.back());
     }
+    end_turn();
     state.counters["share_of_floor"] = median(std::move(ratios));
     state.SetLabel(floor_is.what);
 }

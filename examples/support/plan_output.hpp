@@ -24,13 +24,13 @@
 
 namespace genrender::examples {
 
-/// A plan, and what two calls of the denoiser tell of the time.
+/// A plan, and what a call of the denoiser tells of the time.
 struct timed_plan {
     memory_plan plan;
     double seconds_per_frame = 0; ///< of the denoiser alone, one frame a call and one call at a time
 };
 
-/// Calls the denoiser twice with frames of nothing to see what a call takes, and plans the run on these maps.
+/// Calls the denoiser with frames of nothing to see what a call takes, and plans the run on these maps.
 template <denoiser Phi, canonical_maps Maps, class Real>
 timed_plan plan_run(Phi const& phi, Maps const& maps, render_settings<Real> const& settings, std::size_t threads) {
     auto run = describe_run(phi, maps, threads);
@@ -49,6 +49,7 @@ timed_plan plan_run(Phi const& phi, Maps const& maps, render_settings<Real> cons
         phi(to_view(x0), to_view(std::as_const(z)), Real(1), frames, plain);
         seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
+    call(1); // What is there once a program, such as its code, is no call's.
     auto const several = std::min<std::uint32_t>(3, static_cast<std::uint32_t>(run.frames));
     auto const stack = resident_growth([&] { call(several); });
     auto const one = resident_growth([&] { call(1); });
@@ -68,6 +69,7 @@ inline std::vector<std::pair<std::string, std::size_t>> named_bytes(planned_byte
             {"latents", bytes.latents},
             {"background", bytes.background},
             {"correspondence", bytes.correspondence},
+            {"matching", bytes.matching},
             {"keyframe_features", bytes.bank},
             {"keyframe_residuals", bytes.residuals},
             {"keyframe_latents", bytes.keyframe_latents},

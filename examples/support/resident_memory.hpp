@@ -26,6 +26,17 @@ inline std::optional<std::int64_t> memory_status(std::string const& name) {
     return std::nullopt;
 }
 
+/// From now on memory is returned to the system as soon as it is freed, as far as whole pages go, so that what is
+/// resident is what the program holds; slower, and nothing but the GNU C library does it. It else keeps some of what is
+/// freed, more and more of it as larger blocks are.
+inline void return_freed_memory() {
+#if defined(__GLIBC__)
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_THRESHOLD, 128 << 10);
+    mallopt(M_TRIM_THRESHOLD, 128 << 10);
+#endif
+}
+
 /// The most resident memory that `body()` holds at once beyond what the program held before; none where the system does
 /// not let its high-water mark be lowered.
 template <class Body>

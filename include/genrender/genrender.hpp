@@ -3,6 +3,7 @@
 // (adapters).
 #pragma once
 
+#include <genrender/core/chunked_memory.hpp>
 #include <genrender/core/elementwise.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/exponential.hpp>
@@ -40,10 +41,13 @@
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
 #include <genrender/correspondence/footprint_map.hpp>
+#include <genrender/correspondence/kept_frame.hpp>
 #include <genrender/correspondence/kept_samples.hpp>
+#include <genrender/correspondence/recent_frames.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/reproject.hpp>
 #include <genrender/correspondence/sample_bins.hpp>
+#include <genrender/correspondence/sample_distances.hpp>
 #include <genrender/correspondence/sample_grid.hpp>
 #include <genrender/correspondence/sample_pack.hpp>
 #include <genrender/correspondence/sample_tree.hpp>
@@ -59,6 +63,7 @@
 #include <genrender/noise/background_noise.hpp>
 #include <genrender/noise/brownian_bridge.hpp>
 #include <genrender/noise/initial_noise.hpp>
+#include <genrender/noise/noise_request.hpp>
 #include <genrender/noise/noise_tree.hpp>
 #include <genrender/noise/noise_texture.hpp>
 #include <genrender/noise/normal_lanes.hpp>

@@ -9,6 +9,7 @@
 #include "support/random_stack.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 using namespace genrender;
@@ -27,22 +28,49 @@ TEST_SUITE("attention/attention_scratch") {
             begin += count;
         }
         blocks.back().counts = {halves.data(), {13}};
-        detail::scratch_memory<Real> memory(detail::key_tiles<Real>::scratch(head_size));
-        detail::key_tiles<Real> tiles(blocks, 1, head_size, memory);
-        std::size_t key = 0;
-        while (tiles.next()) {
-            auto const& tile = tiles.tile();
-            CHECK(tile.keys % detail::strip_rows == 0);
-            for (std::size_t k = 0; k < tile.keys; ++k, ++key) {
-                for (std::size_t c = 0; c < head_size; ++c) {
-                    auto const count = key < 187 ? Real{1} : (key < 200 ? Real{0.5} : Real{0});
+        for (auto const in_place : {false, true}) {
+            CAPTURE(in_place);
+            detail::scratch_memory<Real> memory(detail::key_tiles<Real>::scratch(head_size));
+            detail::key_tiles<Real> tiles(blocks, 1, head_size, memory, in_place);
+            std::size_t key = 0;
+            while (tiles.next()) {
+                auto const& tile = tiles.tile();
+                CHECK(tile.is_far == in_place);
+                CHECK(tiles.is_last() == (key + tile.keys == 200));
+                for (std::size_t k = 0; k < tile.keys; ++k, ++key) {
+                    auto const count = key < 187 ? Real{1} : Real{0.5};
                     CHECK(tile.counts[k] == count);
-                    CHECK(tile.K[k * head_size + c] == K(std::min<std::size_t>(key, 199), head_size + c));
-                    CHECK(tile.V[k * head_size + c] == (key < 200 ? count * V(key, head_size + c) : Real{0}));
+                    for (std::size_t c = 0; c < head_size; ++c) {
+                        CHECK(tile.K[k][c] == K(key, head_size + c));
+                        CHECK(tile.V[k][c] == count * V(key, head_size + c));
+                    }
+                    // Copied only where they must be: values that count more or less than once.
+                    CHECK((tile.K[k] == &K(key, head_size)) == in_place);
+                    CHECK((tile.V[k] == &V(key, head_size)) == (in_place && key < 187));
+                }
+                for (auto k = tile.keys; k < detail::tile_keys; ++k) {
+                    CHECK(tile.counts[k] == 0);
+                    CHECK(tile.K[k] == tile.K[tile.keys - 1]);
+                    CHECK(tile.V[k] == tile.V[tile.keys - 1]);
                 }
             }
+            CHECK(key == 200);
         }
-        CHECK(key == 204);
+    }
+
+    TEST_CASE("keys of other strides or storage are copied even where keys are read in place") {
+        auto const K = random_stack<float, 2>({4, 5}, 1);
+        stack<bfloat16, 2> V({5, 4});
+        V(2, 1) = static_cast<bfloat16>(3);
+        std::vector<key_value_view<float>> const blocks{
+            {strided_view<float const, 2>(K.data(), {5, 4}, {1, 5}), std::as_const(V).view()}};
+        detail::scratch_memory<float> memory(detail::key_tiles<float>::scratch(4));
+        detail::key_tiles<float> tiles(blocks, 0, 4, memory, true);
+        REQUIRE(tiles.next());
+        CHECK(tiles.tile().keys == 5);
+        CHECK(tiles.tile().K[2][3] == K(3, 2));
+        CHECK(tiles.tile().V[2][1] == 3);
+        CHECK_FALSE(tiles.next());
     }
 
     TEST_CASE_TEMPLATE("queries that go into a tile come out of it", Real, float, double) {
@@ -59,7 +87,6 @@ TEST_SUITE("attention/attention_scratch") {
                           (q < count ? 2 * Q(q, channels - 1) : Real{0}));
                     CHECK(tile.shift[q] == 0);
                     CHECK(tile.sum[q] == 0);
-                    CHECK(tile.F[q] == 0);
                     tile.sum[q] = 4;
                 }
                 std::copy_n(tile.Q, channels * tile_type::queries, tile.F);

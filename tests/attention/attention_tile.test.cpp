@@ -3,12 +3,14 @@
 #include <genrender/attention/attention_tile.hpp>
 
 #include <genrender/core/random.hpp>
+#include <genrender/core/stack.hpp>
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 using namespace genrender;
@@ -22,6 +24,22 @@ std::vector<Real> random_numbers(std::size_t count, std::uint64_t seed) {
         values[i] = static_cast<Real>(normal_value(seed, random_stream::test, {static_cast<std::uint32_t>(i), 0, 0}));
     }
     return values;
+}
+
+/// Rows of `K` and as many of `V` that follow each other, once each.
+template <class Real>
+detail::key_tile<Real> keys_of(std::vector<Real> const& K, std::vector<Real> const& V, std::size_t head_size) {
+    detail::key_tile<Real> tile;
+    tile.keys = K.size() / head_size;
+    tile.head_size = head_size;
+    tile.is_far = false;
+    for (std::size_t k = 0; k < tile.keys; ++k) {
+        tile.K[k] = K.data() + k * head_size;
+        tile.V[k] = V.data() + k * head_size;
+        tile.counts[k] = 1;
+    }
+    tile.repeat_last();
+    return tile;
 }
 
 /// The tile's memory after some tiles of keys, in which the query `at` is `Q` and all others are 0.
@@ -40,10 +58,8 @@ struct attended {
         }
         std::vector<Real> weights((detail::tile_keys + 1) * tile_type::queries);
         bool fresh = true;
-        for (auto& K : runs) {
-            auto const keys = K.size() / head_size;
-            std::vector<Real> counts(keys, Real{1});
-            detail::attend_to_tile(tile, {K.data(), V.data(), counts.data(), keys, head_size}, weights.data(), fresh);
+        for (auto const& K : runs) {
+            detail::attend_to_tile(tile, keys_of(K, V, head_size), weights.data(), fresh);
             fresh = false;
         }
     }
@@ -97,19 +113,56 @@ TEST_SUITE("attention/attention_tile") {
             tile.Q[tile_type::queries + 1] = 1;
             std::vector<Real> K(keys * 2);
             std::vector<Real> V(keys * 2);
-            std::vector<Real> counts(keys, Real{1});
             for (std::size_t k = 0; k < keys; ++k) {
                 K[2 * k] = k == keys - 1 ? Real{1} : Real{0};
                 K[2 * k + 1] = static_cast<Real>(k) / 3;
                 V[2 * k] = static_cast<Real>(k) / 7;
             }
             std::vector<Real> weights((detail::tile_keys + 1) * tile_type::queries);
-            detail::attend_to_tile(tile, {K.data(), V.data(), counts.data(), keys, 2}, weights.data(), true);
+            detail::attend_to_tile(tile, keys_of(K, V, 2), weights.data(), true);
             if (scale > 0) {
                 CHECK(tile.F[0] / tile.sum[0] == doctest::Approx((keys - 1) / 7.0));
             }
             return tile.F[1] / tile.sum[1];
         };
         CHECK(result(1000) == result(0));
+    }
+
+    TEST_CASE_TEMPLATE("rows that lie anywhere weigh like rows that follow each other", Real, float, double) {
+        using tile_type = detail::query_tile<Real, detail::tile_registers>;
+        for (auto const keys : {std::size_t{1}, detail::strip_rows + 2, detail::tile_keys}) {
+            for (auto const head_size : {std::size_t{1}, std::size_t{19}, std::size_t{40}}) {
+                auto const K = random_numbers<Real>(keys * head_size, 1);
+                auto const V = random_numbers<Real>(keys * head_size, 2);
+                auto const Q = random_numbers<Real>(tile_type::queries * head_size, 3);
+                stack<Real, 2> results({tile_type::queries, head_size});
+                // What stood in F before the first keys must not matter, and results are asked for, not written.
+                auto const attended_to = [&](detail::key_tile<Real> const& tile, strided_view<Real, 2> const& ahead) {
+                    std::vector<Real> memory(tile_type::size(head_size), std::numeric_limits<Real>::quiet_NaN());
+                    tile_type const to(memory.data(), head_size);
+                    std::copy(Q.begin(), Q.end(), to.Q);
+                    std::fill_n(to.shift, tile_type::queries, Real{0});
+                    std::fill_n(to.sum, tile_type::queries, Real{0});
+                    std::vector<Real> weights((detail::tile_keys + 1) * tile_type::queries);
+                    detail::attend_to_tile(to, tile, weights.data(), true, ahead);
+                    detail::attend_to_tile(to, tile, weights.data(), false, ahead);
+                    return memory;
+                };
+                auto const near = keys_of(K, V, head_size);
+                auto far = near;
+                far.is_far = true;
+                std::vector<std::vector<Real>> rows;
+                for (std::size_t k = 0; k < keys; ++k) {
+                    rows.emplace_back(near.K[k], near.K[k] + head_size);
+                    far.K[k] = rows.back().data();
+                    rows.emplace_back(near.V[k], near.V[k] + head_size);
+                    far.V[k] = rows.back().data();
+                }
+                far.repeat_last();
+                CHECK(attended_to(far, results.view()) == attended_to(near, {}));
+                CHECK(std::count(results.data(), results.data() + results.size(), Real{0}) ==
+                      static_cast<std::ptrdiff_t>(results.size()));
+            }
+        }
     }
 }

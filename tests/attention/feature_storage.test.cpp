@@ -41,6 +41,33 @@ TEST_SUITE("attention/feature_storage") {
         CHECK(stored_features(call, f, feature_storage::same).view().data() == f.view().data());
         CHECK(stored_features(call, f, feature_storage::f16).storage() == feature_storage::f16);
     }
+    TEST_CASE_TEMPLATE("features of host memory need no call to be stored", Real, float, double) {
+        CHECK(storable_features<host_features<Real>>);
+        CHECK_FALSE(storable_features<int>);
+        testing::matrix_module<Real> const module(2, 1, 1);
+        std::array const frames{frame_index{0}};
+        auto const f = host_features<Real>::allocate({1, 2, 2});
+        f.view()(0, 1, 1) = Real(1) + Real(0x1p-9);
+        host_attention_call<Real, testing::matrix_module<Real>> const call({}, frames, f, module);
+        CHECK(stored_features(f, feature_storage::same).view().data() == f.view().data());
+        for (auto const storage : {feature_storage::f16, feature_storage::bf16}) {
+            auto const kept = stored_features(f, storage);
+            CHECK(kept.storage() == storage);
+            call.stored(f, storage).visit([&](auto const& expected) {
+                kept.visit([&](auto const& found) {
+                    CHECK(static_cast<float>(found(0, 1, 1)) == static_cast<float>(expected(0, 1, 1)));
+                    CHECK(static_cast<float>(found(0, 1, 1)) == (storage == feature_storage::f16 ? 1 + 0x1p-9F : 1));
+                });
+            });
+        }
+    }
+    TEST_CASE("features that cannot be stored are refused") {
+        CHECK(stored_features(5, feature_storage::same) == 5);
+        CHECK_THROWS_WITH_AS(stored_features(5, feature_storage::bf16),
+                             "stored_features: storage is of 16 bits, expected feature_storage::same for features "
+                             "without `stored`",
+                             value_error);
+    }
     TEST_CASE("a format that the engine cannot store is refused") {
         auto const store = [](feature_storage storage) {
             foreign_call call; // nothing of it is called

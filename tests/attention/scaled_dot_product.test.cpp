@@ -270,6 +270,28 @@ TEST_SUITE("attention/scaled_dot_product") {
         }
     }
 
+    TEST_CASE_TEMPLATE("queries of one tile read keys of ragged blocks where they lie", Real, float, double) {
+        // The same queries among more than one tile have their keys copied.
+        auto const Q = random_stack<Real, 2>({200, 38}, 1);
+        auto const K = random_stack<Real, 2>({150, 76}, 2);
+        auto const V = random_stack<Real, 2>({150, 76}, 3);
+        auto const part = [](stack<Real, 2> const& rows, std::size_t begin, std::size_t count) {
+            // Every other half of a row, so that neither rows nor blocks follow each other.
+            return strided_view<Real const, 2>(rows.data() + 76 * begin + 38, {count, 38}, {76, 1});
+        };
+        blocks_of<Real> blocks;
+        for (auto const& [begin, count] : std::vector<std::array<std::size_t, 2>>{{0, 1}, {1, 61}, {62, 0}, {62, 88}}) {
+            blocks.push_back({part(K, begin, count), part(V, begin, count)});
+        }
+        auto const whole = attention<Real>(Q, blocks, 2);
+        CHECK(largest_difference(whole, naive<Real>(Q.view(), blocks, 2)) < tolerance<Real>);
+        for (auto const count : std::vector<std::size_t>{1, 8, 16, 17, 31, 64}) {
+            stack<Real, 2> F({count, 38});
+            scaled_dot_product(F.view(), Q.view().slice(7, count), blocks, 2);
+            CHECK(largest_difference(F, whole.view().slice(7, count)) == 0);
+        }
+    }
+
     TEST_CASE_TEMPLATE("keys and values in 16 bits attend as the numbers they store", Real, float, double) {
         auto const Q = random_stack<Real, 2>({19, 14}, 1);
         auto const K = random_stack<Real, 2>({150, 14}, 2);

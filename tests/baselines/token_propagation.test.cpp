@@ -109,7 +109,11 @@ TEST_SUITE("baselines/token_propagation") {
             auto call = world.call(other);
             CHECK(equal_bits(world.propagate()(call), plain_attention{}(call)));
             CHECK(world.propagate().propagated_features(other) == nullptr);
+            CHECK(is_plain_at(world.propagate(), other));
         }
+    }
+    TEST_CASE("where it propagates it is not plain") {
+        CHECK_FALSE(is_plain_at(recorded_world<double>().propagate(), place));
     }
     TEST_CASE("a static graph is asked to replace what its attention gave") {
         recorded_world<double> const world;

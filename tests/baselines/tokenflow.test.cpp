@@ -2,11 +2,13 @@
 // [GR sec. 4: TokenFlow*] The baseline against a plain second writing of it, and whole runs.
 #include <genrender/baselines/tokenflow.hpp>
 
+#include "../models/small_networks.hpp"
 #include "../support/dense_texture.hpp"
 #include "../support/sequence_method_laws.hpp"
 #include "small_baseline_run.hpp"
 
 #include <genrender/baselines/baseline_settings.hpp>
+#include <genrender/models/reference_network.hpp>
 
 #include <doctest/doctest.h>
 
@@ -97,6 +99,50 @@ render_settings<double> few_steps() {
     settings.keyframes.count = 2;
     return settings;
 }
+
+/// A processor that counts its runs and is otherwise another one.
+template <class Processor>
+struct counting_processor {
+    Processor* of;
+    std::size_t* runs;
+
+    template <attention_call Call>
+    typename Call::features_type operator()(Call& call) const {
+        ++*runs;
+        return (*of)(call);
+    }
+    bool is_plain_at(attention_place place) const { return genrender::is_plain_at(*of, place); }
+};
+
+/// The reference network, counting the runs of its self-attention modules.
+struct counting_network {
+    using real_type = float;
+    using features_type = reference_network<float>::features_type;
+    using residuals_type = reference_network<float>::residuals_type;
+
+    reference_network<float> const* network;
+    std::size_t* runs;
+
+    std::size_t latent_channels() const { return network->latent_channels(); }
+    grid_extents latent_grid() const { return network->latent_grid(); }
+    std::span<attention_site const> sites() const { return network->sites(); }
+    std::size_t branches() const { return network->branches(); }
+    std::size_t residual_bytes() const { return network->residual_bytes(); }
+
+    template <class Processor>
+    void operator()(strided_view<float, 4> x0, strided_view<float const, 4> z, float sigma,
+                    std::span<frame_index const> frames, Processor& processor, residuals_type const& lent = {}) const {
+        counting_processor<Processor> const counting{&processor, runs};
+        (*network)(x0, z, sigma, frames, counting, lent);
+    }
+    template <class Processor>
+    void run_until(strided_view<float const, 4> z, float sigma, std::span<frame_index const> frames,
+                   Processor& processor, std::span<std::optional<site_index> const> last,
+                   residuals_type* lent = nullptr) const {
+        counting_processor<Processor> const counting{&processor, runs};
+        network->run_until(z, sigma, frames, counting, last, lent);
+    }
+};
 
 std::vector<frame_index> frames_of(std::vector<std::uint32_t> const& numbers) {
     std::vector<frame_index> frames;
@@ -223,6 +269,31 @@ TEST_SUITE("baselines/tokenflow") {
         for (std::size_t i = 0; i < run.frames; ++i) {
             CHECK(frame_difference<double>(outside, to_view(nobody), i) == 0);
         }
+    }
+    TEST_CASE("the way down of keyframes is not run again and the result is the same to the bit") {
+        stack<float, 3> depth({3, 8, 12});
+        for (std::size_t e = 0; e < depth.size(); ++e) {
+            depth.data()[e] = static_cast<float>(e % 7) / 7;
+        }
+        auto const network = reference_network<float>::seeded(depth, "stripes", 1, 2, {}, small_config());
+        auto const maps = random_scene(33, 3, {16, 24}, 2);
+        std::size_t runs = 0;
+        counting_network const phi{&network, &runs};
+        static_assert(residual_lender<counting_network>);
+        auto const run = [&](bool reuses) {
+            render_settings<float> settings;
+            settings.steps = 3;
+            settings.keyframes.count = 2;
+            settings.reuses_keyframes = reuses;
+            runs = 0;
+            render_report report;
+            return render(tokenflow{}, phi, to_uv_view(maps), settings, report);
+        };
+        // Two branches of six sites, of which the decoder has two: one pass of the keyframes and one of each frame.
+        auto const expected = run(false);
+        CHECK(runs == 3 * 2 * (6 + 3 * 6));
+        CHECK(run(true) == expected);
+        CHECK(runs == 3 * 2 * (6 + 6 + 2 * 2));
     }
     TEST_CASE_TEMPLATE("it keeps the laws of sequence methods with every sampler", Real, float, double) {
         auto const maps = random_scene(33, 5, {32, 32}, 3);

@@ -71,13 +71,17 @@ TEST_SUITE("benchmarks_support/benchmark_results") {
         folder.write("notes.txt", "no result");
         folder.write("peers/array.json", R"([{"name": "mix/real_time", "peer": "NumPy", "seconds": 0.5}])");
         folder.write("peers/engine.json", R"({"missing": "No module named 'engine'"})");
+        folder.write("peers/other.json", R"([{"name": "mix", "peer": "Other", "seconds": 2, "cpu_seconds": 3}])");
         auto const all = read_results(folder.path());
         REQUIRE(all.measurements.size() == 2);
         CHECK(all.measurements[0].name == "mix");
         CHECK(all.measurements[1].name == "add");
-        REQUIRE(all.peers.size() == 1);
+        REQUIRE(all.peers.size() == 2);
         CHECK(all.peers[0].name == "mix");
         CHECK(all.peers[0].seconds == 0.5);
+        CHECK(all.peers[1].name == "mix");
+        CHECK(all.peers[1].peer == "Other");
+        CHECK(all.peers[1].seconds == 2);
         CHECK(all.missing.at("engine") == "No module named 'engine'");
     }
 

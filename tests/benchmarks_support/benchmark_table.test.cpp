@@ -104,8 +104,37 @@ TEST_SUITE("benchmarks_support/benchmark_table") {
               "than the peer.\n"
               "\n"
               "Targets: 1 met, 1 missed.\n"
+              "- Beside NumPy: faster in 1 of 1 cases, ratios 2.00 to 2.00\n"
               "- A peer's case that we have not: mix/tokens:256\n"
               "- Peer missing: engine (No module named 'engine')\n");
+    }
+
+    TEST_CASE("several peers of a case stand side by side in the order of their files") {
+        auto all = three_cases();
+        all.peers = {{"mix/tokens:64", "PyTorch 2", 3e-3},
+                     {"mix/tokens:64", "ONNX Runtime 1", 1e-3},
+                     {"mix/tokens:128", "ONNX Runtime 1", 6e-3}};
+        target const no_slower{std::regex("^mix"), "no slower", "ratio_to_peer", std::regex("^ONNX"), "", 1, true};
+        auto const judged = judge(all, std::vector{no_slower});
+        machine const on{"a processor", 2, "a compiler", "-O3", "SSE"};
+        auto const table = markdown_table(judged, on);
+        CHECK(
+            table.find("| missed: 0.500 ≥ 1.00, ratio to ONNX Runtime 1 | 1.50 PyTorch 2; 0.500 ONNX Runtime 1 |\n") !=
+            std::string::npos);
+        CHECK(table.find("| met: 1.50 ≥ 1.00, ratio to ONNX Runtime 1 | 1.50 ONNX Runtime 1 |\n") != std::string::npos);
+        CHECK(table.find("\n- Beside ONNX Runtime 1: faster in 1 of 2 cases, ratios 0.500 to 1.50\n"
+                         "- Beside PyTorch 2: faster in 1 of 1 cases, ratios 1.50 to 1.50\n") != std::string::npos);
+        auto const json = to_json(judged, on);
+        REQUIRE(json["cases"][0]["peers"].size() == 2);
+        CHECK(json["cases"][0]["peers"][0]["peer"] == "PyTorch 2");
+        CHECK(json["cases"][0]["peers"][1]["peer"] == "ONNX Runtime 1");
+    }
+
+    TEST_CASE("a counter's name may tell its unit") {
+        CHECK(detail::counter_text("held_bytes", 6.32e7) == "held 63.2 MB");
+        CHECK(detail::counter_text("growth_a_frame_bytes", 12) == "growth a frame 12.0 B");
+        CHECK(detail::counter_text("network_seconds", 4.6) == "network 4.60 s");
+        CHECK(detail::counter_text("plan_error", 0.0586) == "plan error 0.0586");
     }
 
     TEST_CASE("the JSON holds every figure in full") {

@@ -281,6 +281,7 @@ TEST_SUITE("blending/blend_plan") {
         for (std::uint64_t seed = 0; seed < 6; ++seed) {
             auto const maps = testing::random_scene(seed, 6, {48, 64}, 1 + seed % 4);
             footprint_map const map(to_uv_view(maps), {12, 16});
+            footprint_map const forgetful(to_uv_view(maps), {12, 16}, {.kept_bytes = 0, .kept_frames = 1});
             one_by_one const single{&map};
             auto const KF = draw_shuffled(seed);
             auto const share = seed % 2 == 0 ? Real(0.5) : Real(0.2);
@@ -292,6 +293,9 @@ TEST_SUITE("blending/blend_plan") {
                     auto const plan = make_blend_plan<Real>(map, KF, {i}, share, average);
                     CHECK(plan.offsets == expected.offsets);
                     CHECK(plan.sources == expected.sources);
+                    auto const again = make_blend_plan<Real>(forgetful, KF, {i}, share, average);
+                    CHECK(again.sources == plan.sources);
+                    CHECK(again.weights == plan.weights);
                     REQUIRE(plan.weights.size() == expected.weights.size());
                     for (std::size_t e = 0; e < plan.weights.size(); ++e) {
                         CHECK(plan.weights[e] == doctest::Approx(expected.weights[e]).epsilon(1e-6));

@@ -68,7 +68,7 @@ std::optional<std::uint32_t> number_by_tree(sample_tree<D> const& tree, std::vec
         auto const distance =
             s.place == asked.place ? 0 : std::max(std::abs(offset.down) / rows, std::abs(offset.right) / columns) * 2;
         if (distance <= reach) {
-            std::pair const found(distance, s.number);
+            std::pair const found(distance, static_cast<std::uint32_t>(number));
             closest = closest ? std::min(*closest, found) : found;
         }
     });
@@ -83,7 +83,7 @@ struct tally {
 
 /// Asks 4000 times around the samples and compares every answer that is sure.
 template <std::size_t D>
-tally compare(std::vector<grid_sample<D>> const& samples, std::size_t side, double reach) {
+tally compare(std::vector<grid_sample<D>> samples, std::size_t side, double reach) {
     constexpr double rows = 4;
     constexpr double columns = 4;
     sample_grid<D> const grid(samples, reach, rows, columns, 1);
@@ -120,9 +120,7 @@ std::vector<grid_sample<D>> sheet(std::size_t side) {
     std::vector<grid_sample<D>> samples;
     for (std::size_t row = 0; row < side; ++row) {
         for (std::size_t column = 0; column < side; ++column) {
-            auto s = sheet_sample<D>(side, static_cast<double>(row), static_cast<double>(column));
-            s.number = static_cast<std::uint32_t>(row * side + column);
-            samples.push_back(s);
+            samples.push_back(sheet_sample<D>(side, static_cast<double>(row), static_cast<double>(column)));
         }
     }
     return samples;
@@ -143,7 +141,7 @@ TEST_SUITE("correspondence/sample_grid") {
 #if defined(__GNUC__)
                 CHECK(count.shown > 1000);
                 CHECK(count.not_shown > 500);
-                CHECK(count.unsure < 1400);
+                CHECK(count.unsure < 1000);
 #else
                 CHECK(count.unsure == 4000);
 #endif
@@ -157,15 +155,16 @@ TEST_SUITE("correspondence/sample_grid") {
         for (std::size_t n = 0; n < samples.size(); n += 97) {
             samples[n].footprint.reset();
         }
-        // The same sheet again with other numbers, and one that faces the other way.
+        // Parts of the same sheet again, and of one that faces the other way.
+        std::size_t number = 0;
         for (auto s : sheet<D::value>(32)) {
-            s.number += 5000;
-            if (s.number % 3 == 0) {
+            if (number % 3 == 0) {
                 samples.push_back(s);
-            } else if (s.number % 3 == 1 && s.footprint) {
+            } else if (number % 3 == 1) {
                 std::swap(s.footprint->across, s.footprint->down);
                 samples.push_back(s);
             }
+            ++number;
         }
         auto const count = compare<D::value>(samples, 32, 1);
         CHECK(count.shown + count.not_shown + count.unsure == 4000);
@@ -191,7 +190,8 @@ TEST_SUITE("correspondence/sample_grid") {
             CHECK(count.shown + count.not_shown + count.unsure == 4000);
         }
         auto const asked = sheet_sample<2>(16, 3, 5);
-        auto const answer = sample_grid<2>({}, 1, 4, 4, 1).find(asked.place, *asked.footprint);
+        std::vector<grid_sample<2>> none;
+        auto const answer = sample_grid<2>(none, 1, 4, 4, 1).find(asked.place, *asked.footprint);
         CHECK(answer.is != verdict::shown);
     }
 }

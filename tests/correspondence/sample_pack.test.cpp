@@ -21,8 +21,7 @@ TEST_SUITE("correspondence/sample_pack") {
     TEST_CASE("ways right and down are in half cells") {
         // Cells of 4 rows and 8 columns; a pixel is 1/2 wide and 1/4 high.
         sample_pack<2> pack;
-        pack.set(3, {7, {1, 2}, surface_footprint<2>{{0.5F, 0}, {0, 0.25F}}}, 4, 8);
-        CHECK(pack.numbers[3] == 7);
+        pack.set(3, {{1, 2}, surface_footprint<2>{{0.5F, 0}, {0, 0.25F}}}, 4, 8);
         CHECK(pack.places[0][3] == 1);
         CHECK(pack.places[1][3] == 2);
         CHECK(pack.measures[0][3] == 0.5F); // 2 pixels a unit, 4 pixels a half cell
@@ -36,7 +35,7 @@ TEST_SUITE("correspondence/sample_pack") {
         std::array<float, 3> const origin{1, -2, 3};
         std::array<float, 3> const place{1.25F, -1.75F, 3.125F};
         sample_pack<3> pack;
-        pack.set(0, {0, origin, footprint}, 4, 4);
+        pack.set(0, {origin, footprint}, 4, 4);
         std::array<double, 3> found{};
         for (std::size_t which = 0; which < 3; ++which) {
             for (std::size_t d = 0; d < 3; ++d) {
@@ -52,9 +51,9 @@ TEST_SUITE("correspondence/sample_pack") {
 
     TEST_CASE("pixels without footprint and very thin ones have no measures") {
         sample_pack<2> pack;
-        pack.set(0, {1, {0, 0}, {}}, 4, 4);
-        pack.set(1, {1, {0, 0}, surface_footprint<2>{{1, 0}, {1, 1e-4F}}}, 4, 4);
-        pack.set(2, {1, {0, 0}, surface_footprint<2>{{1, 0}, {0, 0.01F}}}, 4, 4);
+        pack.set(0, {{0, 0}, {}}, 4, 4);
+        pack.set(1, {{0, 0}, surface_footprint<2>{{1, 0}, {1, 1e-4F}}}, 4, 4);
+        pack.set(2, {{0, 0}, surface_footprint<2>{{1, 0}, {0, 0.01F}}}, 4, 4);
         for (auto const& measure : pack.measures) {
             CHECK(std::isnan(measure[0]));
             CHECK(std::isnan(measure[1]));

@@ -113,20 +113,23 @@ TEST_SUITE("correspondence/surface_correspondence") {
     TEST_CASE("[GR sec. 3.2] matches of whole frames are told by footprints and not by texels") {
         auto const maps = testing::random_scene(8, 4, {48, 48}, 3);
         surface_correspondence<2> const map(to_uv_view(maps), {12, 12}, {});
-        auto const matches = map.matches({0}, {2});
-        REQUIRE(matches != nullptr);
+        std::vector<frame_index> const frames{{2}, {0}, {3}};
+        auto const matches = map.matches({0}, frames);
+        REQUIRE(matches.size() == 3);
         std::size_t shown = 0;
-        for (std::uint32_t t = 0; t < 144; ++t) {
-            auto const point = map.point_at({0}, {t});
-            auto const token = point ? map.token_at({2}, *point) : std::nullopt;
-            REQUIRE((matches->is_shown[t] != 0) == token.has_value());
-            CHECK(matches->tokens[t] == (token ? token->value : 0));
-            CHECK(matches->qualities[t] == (point ? map.quality_at({2}, *point) : 0));
-            shown += token ? 1U : 0U;
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::uint32_t t = 0; t < 144; ++t) {
+                auto const point = map.point_at({0}, {t});
+                auto const token = point ? map.token_at(frames[k], *point) : std::nullopt;
+                REQUIRE((matches[k]->is_shown[t] != 0) == token.has_value());
+                CHECK(matches[k]->tokens[t] == (token ? token->value : 0));
+                CHECK(matches[k]->qualities[t] == (point ? map.quality_at(frames[k], *point) : 0));
+                shown += token ? 1U : 0U;
+            }
         }
-        CHECK(shown > 30);
+        CHECK(shown > 90);
         surface_correspondence<2> const texels(to_uv_view(maps), {12, 12}, {.kind = correspondence_kind::texel_grid});
-        CHECK(texels.matches({0}, {2}) == nullptr);
+        CHECK(texels.matches({0}, frames).empty());
     }
 
     TEST_CASE("[GR sec. 3.2] both kinds keep the laws") {

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 using namespace genrender;
 
@@ -35,14 +36,14 @@ TEST_SUITE("correspondence/token_matches") {
         CHECK(kept.of({1}, {2}, make) == first);
         CHECK(made == 1);
         CHECK(first->tokens[0] == 7);
-        CHECK(kept.byte_count() == first->byte_count());
+        CHECK(kept.byte_count() == token_matches::bytes_of(2));
         // The way back is another pair.
         CHECK(kept.of({2}, {1}, make) != first);
         CHECK(made == 2);
     }
 
     TEST_CASE("what there is no room for is made again and what came first stays") {
-        kept_matches kept(matches_of(0).byte_count());
+        kept_matches kept(token_matches::bytes_of(2));
         std::size_t made = 0;
         auto const make = [&] {
             ++made;
@@ -54,10 +55,25 @@ TEST_SUITE("correspondence/token_matches") {
         CHECK(made == 3);
         kept.of({0}, {0}, make);
         CHECK(made == 3);
-        CHECK(kept.byte_count() == matches_of(0).byte_count());
+        CHECK(kept.byte_count() == token_matches::bytes_of(2));
         kept_matches none(0);
         CHECK(none.of({0}, {0}, make)->tokens[0] == 3);
         CHECK(none.byte_count() == 0);
+    }
+
+    TEST_CASE("matches outlive what kept them and lie in few chunks") {
+        std::shared_ptr<token_matches const> last;
+        {
+            kept_matches kept(1U << 20);
+            for (std::uint32_t frame = 0; frame < 500; ++frame) {
+                last = kept.of({frame}, {0}, [&] { return matches_of(frame); });
+            }
+            CHECK(kept.byte_count() == 500 * token_matches::bytes_of(2));
+        }
+        CHECK(last->tokens[0] == 499);
+        CHECK(kept_matches::expected_bytes(500, 2, 1U << 20) == chunked_memory::chunk_bytes);
+        CHECK(kept_matches::expected_bytes(100000, 2, 1U << 20) == 2 * chunked_memory::chunk_bytes);
+        CHECK(kept_matches::expected_bytes(500, 2, 0) == 0);
     }
 
     TEST_CASE("threads get equal matches") {
@@ -69,6 +85,6 @@ TEST_SUITE("correspondence/token_matches") {
             wrong += matches->tokens[0] == frame ? 0U : 1U;
         });
         CHECK(wrong == 0);
-        CHECK(kept.byte_count() == 10 * matches_of(0).byte_count());
+        CHECK(kept.byte_count() == 10 * token_matches::bytes_of(2));
     }
 }

@@ -44,41 +44,34 @@ static_assert(!canonical_maps<int>);
 } // namespace
 
 TEST_SUITE("guidance/canonical_maps") {
-    TEST_CASE("[GR sec. 3] the canonical point of UV maps is the texture coordinate") {
-        stack<float, 4> uv({1, 1, 2, 2});
-        uv(0, 0, 1, 0) = 0.25F;
-        uv(0, 0, 1, 1) = 0.75F;
-        stack<std::uint32_t, 3> const object({1, 1, 2});
-        stack<std::uint8_t, 3> const coverage({1, 1, 2});
-        uv_maps_view const view(uv.view(), object.view(), coverage.view());
-        CHECK(view.point_at({0}, {0, 1}) == std::array{0.25F, 0.75F});
-    }
-
-    TEST_CASE("extents of position maps come from coverage") {
-        stack<float, 4> const position({3, 4, 5, 3});
+    TEST_CASE_TEMPLATE("extents come from coverage", Maps, uv_maps_view, position_maps_view) {
+        stack<float, 4> const points({3, 4, 5, Maps::dimensions});
         stack<std::uint32_t, 3> const object({3, 4, 5});
         stack<std::uint8_t, 3> const coverage({3, 4, 5});
-        position_maps_view const view(position.view(), object.view(), coverage.view());
+        Maps const view(points.view(), object.view(), coverage.view());
         CHECK(view.frame_count() == 3);
         CHECK(view.grid() == grid_extents{4, 5});
     }
 
-    TEST_CASE("planes of x and y and z are as good as triples") {
-        // [3 coordinates, 1 frame, 2 rows, 2 columns] in memory, seen as [frames, height, width, 3].
+    TEST_CASE_TEMPLATE("planes of coordinates are as good as points", Maps, uv_maps_view, position_maps_view) {
+        // [coordinates, 1 frame, 2 rows, 2 columns] in memory, seen as [frames, height, width, coordinates].
         std::array<float, 12> const planes{0, 1, 2, 3, 10, 11, 12, 13, 20, 21, 22, 23};
-        strided_view<float const, 4> const position(planes.data(), {1, 2, 2, 3}, {4, 2, 1, 4});
+        strided_view<float const, 4> const points(planes.data(), {1, 2, 2, Maps::dimensions}, {4, 2, 1, 4});
         stack<std::uint32_t, 3> object({1, 2, 2});
         stack<std::uint8_t, 3> coverage({1, 2, 2});
         coverage(0, 1, 0) = 255; // anything but 0 is covered
         object(0, 1, 0) = 4;
-        position_maps_view const view(position, object.view(), coverage.view());
-        CHECK(view.point_at({0}, {1, 0}) == std::array{2.0F, 12.0F, 22.0F});
+        Maps const view(points, object.view(), coverage.view());
+        auto const point = view.point_at({0}, {1, 0});
+        for (std::size_t d = 0; d < Maps::dimensions; ++d) {
+            CHECK(point[d] == 10 * static_cast<float>(d) + 2);
+        }
         CHECK(view.is_covered({0}, {1, 0}));
         CHECK_FALSE(view.is_covered({0}, {0, 0}));
         CHECK(view.object_at({0}, {1, 0}) == object_index{4});
     }
 
-    TEST_CASE("position maps that do not fit each other are refused by name") {
+    TEST_CASE("maps that do not fit each other are refused by name") {
         stack<float, 4> const position({1, 2, 2, 3});
         stack<float, 4> const uv({1, 2, 2, 2});
         stack<float, 4> const longer({2, 2, 2, 3});

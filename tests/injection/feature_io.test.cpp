@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 using namespace genrender;
@@ -123,6 +125,26 @@ bool are_close(host_features<Real> const& a, host_features<Real> const& b) {
     return greatest <= (sizeof(Real) == 4 ? 1e-6 : 1e-13);
 }
 
+/// The greatest difference of two handles' values, in whatever format each keeps them.
+template <class Real>
+double greatest_kept_difference(host_features<Real> const& a, host_features<Real> const& b) {
+    REQUIRE(a.extents() == b.extents());
+    double greatest = 0;
+    a.visit([&](auto const& of_a) {
+        b.visit([&](auto const& of_b) {
+            for (std::size_t i = 0; i < a.extents()[0]; ++i) {
+                for (std::size_t t = 0; t < a.extents()[1]; ++t) {
+                    for (std::size_t c = 0; c < a.extents()[2]; ++c) {
+                        auto const difference = static_cast<double>(of_a(i, t, c)) - static_cast<double>(of_b(i, t, c));
+                        greatest = std::max(greatest, std::abs(difference));
+                    }
+                }
+            }
+        });
+    });
+    return greatest;
+}
+
 bool always(attention_place) { return true; }
 bool never(attention_place) { return false; }
 
@@ -176,6 +198,36 @@ TEST_SUITE("injection/feature_io") {
             CHECK(are_close(*graph_bank.find(place)->F_KF, *called_bank.find(place)->F_KF));
             // The graph's own handles are kept, not copies of what they hold.
             CHECK(graph_bank.find(place)->f_KF->view().data() == f.view().data());
+        }
+    }
+
+    TEST_CASE_TEMPLATE("the recorder keeps the same 16 bits both ways", Real, float, double) {
+        matrix_module<Real> const module(channels, 2, 1);
+        auto const f = random_features<Real>({KF.size(), tokens, channels}, 2);
+        for (auto const storage : {feature_storage::f16, feature_storage::bf16}) {
+            feature_bank<host_features<Real>> called_bank(1, 2);
+            feature_bank<host_features<Real>> graph_bank(1, 2);
+            auto const F =
+                through_callback(module, f, KF, recorder<host_features<Real>>(called_bank, always, true, storage));
+            // A graph that puts out the F of the callback to the bit.
+            record_features(recorder<host_features<Real>>(graph_bank, always, true, storage), place, f, F);
+            auto const& called = *called_bank.find(place);
+            auto const& graphed = *graph_bank.find(place);
+            CHECK(graphed.F_KF->storage() == storage);
+            CHECK(greatest_kept_difference(*graphed.F_KF, *called.F_KF) == 0);
+            CHECK(greatest_kept_difference(*graphed.F_KF, F) > 0);
+            CHECK(greatest_kept_difference(*graphed.f_KF, host_features<Real>::rounded(f.view(), storage)) == 0);
+
+            // The injected pass mixes in the same.
+            random_plan<Real> const plan(tokens, KF.size(), 4);
+            injection_settings<Real> settings;
+            settings.pre_attention = false;
+            auto const rows = [&](site_index, frame_index) { return plan.rows(); };
+            auto const stack = random_features<Real>({frames.size(), tokens, channels}, 3);
+            injector<host_features<Real>, Real> const inject(called_bank, KF, rows, settings);
+            injector<host_features<Real>, Real> const injected(graph_bank, KF, rows, settings);
+            CHECK(greatest_kept_difference(through_callback(module, stack, frames, inject),
+                                           through_callback(module, stack, frames, injected)) == 0);
         }
     }
 

@@ -285,6 +285,15 @@ TEST_SUITE("injection/injector") {
         }
     }
 
+    TEST_CASE("a bank of another number of keyframes is refused in a sentence") {
+        recorded_world<float> const world;
+        auto const rows = [](site_index, frame_index) { return sparse_rows<float>{}; };
+        auto call = world.call(taken);
+        std::vector<frame_index> const four{{6}, {1}, {4}, {5}};
+        injector<host_features<float>, float> const pass(world.bank, four, rows, {});
+        CHECK_THROWS_WITH_AS(pass(call), "pre_attention_sources: K_KF is [3, 13, 8], expected [4, 13, 8]", shape_error);
+    }
+
     TEST_CASE("it is plain where the bank holds nothing") {
         recorded_world<float> const world;
         auto const pass = world.inject();

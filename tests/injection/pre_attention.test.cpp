@@ -69,6 +69,19 @@ TEST_SUITE("injection/pre_attention") {
         CHECK(pre_attention_sources(K, K, 0, K_KF, K_KF, 1, 0).size() == 1);
     }
 
+    TEST_CASE("[GR eq. 5] keys and values of another number of keyframes are refused") {
+        auto const one = random_features<double>({1, 5, 2}, 1);
+        auto const two = random_features<double>({2, 5, 2}, 2);
+        auto const three = random_features<double>({3, 5, 2}, 3);
+        CHECK_NOTHROW(pre_attention_sources(one, one, 0, three, three, 3));
+        CHECK_THROWS_WITH_AS(pre_attention_sources(one, one, 0, two, three, 3),
+                             "pre_attention_sources: K_KF is [2, 5, 2], expected [3, 5, 2]", shape_error);
+        CHECK_THROWS_WITH_AS(pre_attention_sources(one, one, 0, three, two, 3),
+                             "pre_attention_sources: V_KF is [2, 5, 2], expected [3, 5, 2]", shape_error);
+        // More of them than keyframes are another pass's too, and a keyframe that is left out is still there.
+        CHECK_THROWS_AS(pre_attention_sources(one, one, 0, three, three, 2, 1), shape_error);
+    }
+
     TEST_CASE_TEMPLATE("[GR eq. 5] one token and one keyframe by hand", Real, float, double) {
         matrix_module<Real> module(1);
         module.W_Q(0, 0) = 1;

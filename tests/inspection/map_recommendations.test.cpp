@@ -95,6 +95,13 @@ TEST_SUITE("inspection/map_recommendations") {
         CHECK(only([](map_check& c) { c.frames.pop_back(); }).kind == one_frame);
     }
 
+    TEST_CASE("frames without background are no finding for a run that needs none") {
+        auto check = sound();
+        check.frames[0].covered = 4096;
+        CHECK(recommendations_on(check, {16, 16}, {}, true).size() == 1);
+        CHECK(recommendations_on(check, {16, 16}, {}, false).empty());
+    }
+
     TEST_CASE("maps without frames or pixels end the report") {
         auto const none = only([](map_check& c) { c.frames.clear(); });
         CHECK(none.kind == no_frames);

@@ -142,6 +142,23 @@ TEST_SUITE("inspection/preflight") {
         CHECK(*report.grids[0].error() < 0.2); // a representative lies half a pixel of 4 beside the middle
     }
 
+    TEST_CASE("frames without background are said where latent normalisation skips them") {
+        auto maps = slanted_maps(4);
+        for (std::size_t p = 0; p < 64 * 64; ++p) {
+            maps.coverage(1, p / 64, p % 64) = 1;
+        }
+        render_settings<float> settings;
+        CHECK(says(flown(maps, settings), no_background));
+        settings.normalization.fallback = without_background::all_pixels;
+        CHECK_FALSE(says(flown(maps, settings), no_background));
+        settings.normalization.fallback = without_background::skip;
+        settings.normalization.window_end = 0;
+        CHECK_FALSE(says(flown(maps, settings), no_background));
+        settings.normalization.window_end = 1;
+        settings.normalization.enabled = false;
+        CHECK_FALSE(says(flown(maps, settings), no_background));
+    }
+
     TEST_CASE("grids that do not divide the maps are refused alone") {
         auto const report = flown(slanted_maps(6), {}, {{7, 7}, {16, 16}, {0, 0}});
         CHECK_FALSE(report.allows_run());

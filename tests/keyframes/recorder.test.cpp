@@ -190,6 +190,22 @@ TEST_SUITE("keyframes/recorder") {
         CHECK(bank.find({{1}, 0}) == nullptr);
     }
 
+    TEST_CASE("features of a static graph are kept in the format asked for or refused") {
+        feature_bank<features> bank(1, 1);
+        recorder<features>(bank, always, true, feature_storage::bf16).record({}, input(3), input(4));
+        REQUIRE(bank.find({}) != nullptr);
+        CHECK(bank.find({})->f_KF->storage() == feature_storage::bf16);
+        CHECK(bank.find({})->F_KF->storage() == feature_storage::bf16);
+
+        feature_bank<int> of_an_engine(1, 1);
+        recorder<int> const pass(of_an_engine, always, true, feature_storage::bf16);
+        CHECK_THROWS_WITH_AS(pass.record({}, 1, 2),
+                             "stored_features: storage is of 16 bits, expected feature_storage::same for features "
+                             "without `stored`",
+                             value_error);
+        CHECK_NOTHROW(recorder<int>(of_an_engine, never, true, feature_storage::bf16).record({}, 1, 2));
+    }
+
     TEST_CASE("calls at different places may run at the same time") {
         module_type const module(channels, 1, 1);
         feature_bank<features> bank(12, 2);

@@ -9,8 +9,11 @@
 #include "support/random_stack.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -86,6 +89,74 @@ TEST_SUITE("normalization/channel_statistics") {
         auto const s = masked_statistics(view_of(z, {1, 2, 2}), view_of(std::vector<std::uint8_t>(4, 1), {2, 2}), 0.0F);
         CHECK(s.mean[0] == 1000000.0F);
         CHECK(s.deviation[0] == doctest::Approx(std::sqrt(0.25 / 3)).epsilon(1e-6));
+    }
+
+    TEST_CASE_TEMPLATE("any number of values under any mask agrees with the definition", Real, float, double) {
+        auto const far = [](double x) { return 300 * x; };
+        auto const near_1e5 = [](double x) { return 1e5 + x; };
+        auto const same = [](double x) { return x; };
+        for (std::size_t const count : {2U, 3U, 15U, 64U, 127U, 129U, 1000U, 4096U, 4099U}) {
+            for (std::size_t const every : {1U, 2U, 3U, 64U}) {
+                for (auto const& scaled : {std::function<double(double)>(same), {far}, {near_1e5}}) {
+                    CAPTURE(count);
+                    CAPTURE(every);
+                    auto z = random_stack<Real, 3>({2, 1, count}, 5);
+                    stack<std::uint8_t, 2> mask({1, count});
+                    std::size_t pixels = 0;
+                    for (std::size_t e = 0; e < count; ++e) {
+                        auto const is_kept = e % every == every / 2 || e + 1 == count;
+                        pixels += is_kept ? 1 : 0;
+                        mask.data()[e] = is_kept ? 7 : 0;
+                        for (std::size_t c = 0; c < 2; ++c) {
+                            auto& value = z.data()[c * count + e];
+                            // The first value of channel 1 lies far from all others.
+                            auto const apart = c == 1 && e == every / 2 ? 50.0 : 0.0;
+                            value = is_kept ? static_cast<Real>(scaled(static_cast<double>(value) + apart))
+                                            : std::numeric_limits<Real>::quiet_NaN();
+                        }
+                    }
+                    auto const s = masked_statistics(std::as_const(z).view(), std::as_const(mask).view(), Real{0});
+                    REQUIRE(s.pixels == pixels);
+                    for (std::size_t c = 0; c < 2 && pixels > 1; ++c) {
+                        auto const mean_of = [&](auto const& f) {
+                            double sum = 0;
+                            for (std::size_t e = 0; e < count; ++e) {
+                                sum += mask.data()[e] != 0 ? f(static_cast<double>(z.data()[c * count + e])) : 0.0;
+                            }
+                            return sum / static_cast<double>(pixels);
+                        };
+                        auto const mean = mean_of([](double x) { return x; });
+                        auto const squares = mean_of([mean](double x) { return (x - mean) * (x - mean); });
+                        auto const n = static_cast<double>(pixels);
+                        auto const deviation = std::sqrt(squares * n / (n - 1));
+                        auto const exact = std::is_same_v<Real, float> ? 3e-7 : 1e-14;
+                        REQUIRE(std::abs(static_cast<double>(s.mean[c]) - mean) <=
+                                exact * (std::abs(mean) + deviation));
+                        REQUIRE(std::abs(static_cast<double>(s.deviation[c]) - deviation) <= 2 * exact * deviation);
+                    }
+                }
+            }
+        }
+    }
+
+    TEST_CASE("numbers whose squares have no place in single precision count all the same") {
+        for (auto const scale : {1e-30F, 1e-22F, 1e17F, 1e25F}) {
+            CAPTURE(scale);
+            std::vector<float> z(200);
+            for (std::size_t e = 0; e < z.size(); ++e) {
+                z[e] = e % 2 == 0 ? scale : 3 * scale;
+            }
+            auto const s =
+                masked_statistics(view_of(z, {1, 10, 20}), view_of(std::vector<std::uint8_t>(200, 1), {10, 20}), 0.0F);
+            CHECK(s.mean[0] / scale == doctest::Approx(2).epsilon(1e-6));
+            CHECK(s.deviation[0] / scale == doctest::Approx(std::sqrt(200.0 / 199)).epsilon(1e-6));
+        }
+        // A constant background has none.
+        std::vector<float> const flat(200, 0.1F);
+        auto const s =
+            masked_statistics(view_of(flat, {1, 10, 20}), view_of(std::vector<std::uint8_t>(200, 1), {10, 20}), 0.0F);
+        CHECK(s.mean[0] == 0.1F);
+        CHECK(s.deviation[0] == 0);
     }
 
     TEST_CASE("strided latents and masks give the same statistics") {

@@ -149,7 +149,7 @@ TEST_SUITE("pipeline/memory_plan") {
             }
         }
     }
-    TEST_CASE("the peak is within 10 % of the heap's and grows by what frames take alone") {
+    TEST_CASE("the peak is within 5 % of the heap's and grows by what frames take alone") {
         if (!counted_memory::is_counted) {
             MESSAGE("the heap is not counted here");
             return;
@@ -161,17 +161,19 @@ TEST_SUITE("pipeline/memory_plan") {
             auto const many = compare(240, settings);
             MESSAGE("planned ", few.plan.bytes.peak, " and ", many.plan.bytes.peak, " bytes, measured ", few.measured,
                     " and ", many.measured);
-            CHECK(few.error() < 0.1);
-            CHECK(many.error() < 0.1);
-            auto const planned = static_cast<double>(many.plan.bytes.of_frames() - many.plan.bytes.maps) -
-                                 static_cast<double>(few.plan.bytes.of_frames() - few.plan.bytes.maps);
+            CHECK(few.error() < 0.05);
+            CHECK(many.error() < 0.05);
+            // Besides latents and what stands for tokens, matches are kept as far as they may.
+            auto const growing = [](planned_bytes const& bytes) {
+                return static_cast<double>(bytes.of_frames() - bytes.maps + bytes.matching);
+            };
             auto const grown = static_cast<double>(many.measured) - static_cast<double>(few.measured);
-            CHECK(grown < 1.1 * planned);
+            CHECK(grown < 1.1 * (growing(many.plan.bytes) - growing(few.plan.bytes)));
         }
         settings.feature_storage = feature_storage::bf16;
-        CHECK(compare(24, settings).error() < 0.1);
+        CHECK(compare(24, settings).error() < 0.05);
         settings = two_steps();
         settings.window_end = 0;
-        CHECK(compare(24, settings).error() < 0.1);
+        CHECK(compare(24, settings).error() < 0.05);
     }
 }

@@ -72,65 +72,97 @@ void read_rows(Real* to, strided_view<Stored const, 2> const& from, std::size_t 
 template <class Real>
 class key_tiles {
 public:
-    static std::size_t scratch(std::size_t head_size) { return tile_keys * (2 * head_size + 1); }
+    static std::size_t scratch(std::size_t head_size) { return 2 * tile_keys * head_size; }
 
+    /// With `in_place`, rows of neighbouring numbers of type Real are read where they lie; else all are copied, which is
+    /// worth it when they are read several times: copies lie close together.
     key_tiles(std::span<key_value_view<Real> const> blocks, std::size_t head, std::size_t head_size,
-              scratch_memory<Real>& memory)
-        : blocks_(blocks), head_(head), tile_{memory.take(tile_keys * head_size), memory.take(tile_keys * head_size),
-                                              memory.take(tile_keys), 0, head_size} {}
+              scratch_memory<Real>& memory, bool in_place)
+        : blocks_(blocks), head_(head), in_place_(in_place), K_(memory.take(tile_keys * head_size)),
+          V_(memory.take(tile_keys * head_size)) {
+        tile_.head_size = head_size;
+        tile_.is_far = in_place;
+        skip_empty();
+    }
 
     /// Whether there was another tile; it is in tile() until the next call.
     bool next() {
-        auto const d = tile_.head_size;
-        std::size_t filled = 0;
-        while (filled < tile_keys && block_ < blocks_.size()) {
+        tile_.keys = 0;
+        while (tile_.keys < tile_keys && !is_last()) {
             auto const& block = blocks_[block_];
-            auto const count = std::min(tile_keys - filled, block.K.extent(0) - token_);
-            auto const rows_of = [&](stored_view<Real> const& rows, Real* to) {
-                rows.visit(
-                    [&](auto const& view) { read_rows(to + filled * d, head_of(view, head_, d), token_, count); });
-            };
-            if (count > 0) {
-                rows_of(block.K, tile_.K);
-                rows_of(block.V, tile_.V);
-                read_counts(block, filled, count);
-            }
-            filled += count;
+            auto const count = std::min(tile_keys - tile_.keys, block.K.extent(0) - token_);
+            auto const has_counts = block.counts.extent(0) > 0;
+            take_rows(tile_.K, K_, block.K, count, in_place_);
+            take_rows(tile_.V, V_, block.V, count, in_place_ && !has_counts);
+            take_counts(block, count);
+            tile_.keys += count;
             token_ += count;
-            if (token_ == block.K.extent(0)) {
-                ++block_;
-                token_ = 0;
-            }
+            skip_empty();
         }
-        tile_.keys = (filled + strip_rows - 1) / strip_rows * strip_rows;
-        for (auto key = filled; key < tile_.keys; ++key) {
-            std::copy_n(tile_.K + (filled - 1) * d, d, tile_.K + key * d);
-            std::fill_n(tile_.V + key * d, d, Real{0});
-            tile_.counts[key] = 0;
+        if (tile_.keys == 0) {
+            return false;
         }
-        return filled > 0;
+        tile_.repeat_last();
+        return true;
     }
 
     key_tile<Real> const& tile() const { return tile_; }
 
+    /// Whether no keys come after those of tile().
+    bool is_last() const { return block_ == blocks_.size(); }
+
 private:
+    void skip_empty() {
+        while (!is_last() && token_ == blocks_[block_].K.extent(0)) {
+            ++block_;
+            token_ = 0;
+        }
+    }
+
+    /// Points the next `count` of `rows` to where their numbers are, `scratch` or not.
+    template <class Rows>
+    void take_rows(Rows& rows, Real* scratch, stored_view<Real> const& stored, std::size_t count, bool in_place) {
+        auto const d = tile_.head_size;
+        auto const point_to = [&](Real const* first, std::ptrdiff_t stride) {
+            for (std::size_t key = 0; key < count; ++key) {
+                rows[tile_.keys + key] = first + static_cast<std::ptrdiff_t>(key) * stride;
+            }
+        };
+        stored.visit([&]<class Stored>(strided_view<Stored const, 2> const& all) {
+            auto const view = head_of(all, head_, d).slice(token_, count);
+            if constexpr (std::is_same_v<Stored, Real>) {
+                if (in_place && view.rows_are_contiguous()) {
+                    point_to(view.data(), view.stride(0));
+                    return;
+                }
+            }
+            auto* const copies = scratch + tile_.keys * d;
+            read_rows(copies, view, 0, count);
+            point_to(copies, static_cast<std::ptrdiff_t>(d));
+        });
+    }
+
     /// Equal tokens add up: their values are taken so often, and so are their weights in the sum.
-    void read_counts(key_value_view<Real> const& block, std::size_t filled, std::size_t count) {
+    void take_counts(key_value_view<Real> const& block, std::size_t count) {
+        auto* const counts = tile_.counts.data() + tile_.keys;
         if (block.counts.extent(0) == 0) {
-            std::fill_n(tile_.counts + filled, count, Real{1});
+            std::fill_n(counts, count, Real{1});
             return;
         }
         auto const d = tile_.head_size;
         for (std::size_t key = 0; key < count; ++key) {
             auto const equal_tokens = block.counts(token_ + key);
-            tile_.counts[filled + key] = equal_tokens;
-            auto* const V = tile_.V + (filled + key) * d;
+            counts[key] = equal_tokens;
+            auto* const V = V_ + (tile_.keys + key) * d;
             std::transform(V, V + d, V, [&](Real value) { return value * equal_tokens; });
         }
     }
 
     std::span<key_value_view<Real> const> blocks_;
     std::size_t head_;
+    bool in_place_;
+    Real* K_; ///< [tile_keys, head_size] copies
+    Real* V_; ///< [tile_keys, head_size] copies
     std::size_t block_ = 0;
     std::size_t token_ = 0;
     key_tile<Real> tile_;
@@ -148,7 +180,29 @@ void each_square(std::size_t queries, std::size_t channels, Body&& body) {
     }
 }
 
-/// Puts queries [count, head_size] into the columns of an empty tile, times `scale`; columns left over are 0.
+/// Calls body(i, row) for rows begin + i of a view, i < N, that it has.
+template <std::size_t N, class T, class Body>
+GENRENDER_ALWAYS_INLINE inline void for_each_row(strided_view<T, 2> const& view, std::size_t begin, Body&& body) {
+    auto const stride = view.stride(0);
+    auto const first = std::min(begin, view.extent(0));
+    auto const count = view.extent(0) - first;
+    auto* const rows = view.data() + static_cast<std::ptrdiff_t>(first) * stride;
+    auto const visit = [&](auto i)
+                           GENRENDER_ALWAYS_INLINE { body(i, rows + static_cast<std::ptrdiff_t>(i()) * stride); };
+    // Nearly always there are all of them, and then nothing stands between one and the next.
+    if (count >= N) {
+        unrolled<N>(visit);
+    } else {
+        unrolled<N>([&](auto i) GENRENDER_ALWAYS_INLINE {
+            if (i < count) {
+                visit(i);
+            }
+        });
+    }
+}
+
+/// Puts queries [count, head_size] into the columns of a tile, times `scale`, and empties it but for F; columns left over
+/// are 0.
 template <class Real, std::size_t Registers>
 void read_queries(query_tile<Real, Registers> const& tile, strided_view<Real const, 2> const& Q, Real scale) {
     constexpr auto queries = query_tile<Real, Registers>::queries;
@@ -157,12 +211,12 @@ void read_queries(query_tile<Real, Registers> const& tile, strided_view<Real con
     auto const channels = Q.extent(1);
     if (channels >= n && Q.rows_are_contiguous()) {
         each_square<Real>(queries, channels, [&](std::size_t q, std::size_t c) {
-            lanes<Real> square[n];
-            unrolled<n>([&](auto i) GENRENDER_ALWAYS_INLINE {
-                square[i] = q + i < count ? load(&Q(q + i, c)) * scale : lanes<Real>{};
-            });
+            lanes<Real> square[n]{};
+            for_each_row<n>(
+                Q, q, [&](auto i, Real const* row) GENRENDER_ALWAYS_INLINE { square[i] = load(row + c) * scale; });
             transpose<Real>(square);
-            unrolled<n>([&](auto i) GENRENDER_ALWAYS_INLINE { store(tile.Q + (c + i) * queries + q, square[i]); });
+            auto* const to = tile.Q + c * queries + q;
+            unrolled<n>([&](auto i) GENRENDER_ALWAYS_INLINE { store(to + i * queries, square[i]); });
         });
     } else {
         for (std::size_t c = 0; c < channels; ++c) {
@@ -171,7 +225,6 @@ void read_queries(query_tile<Real, Registers> const& tile, strided_view<Real con
             }
         }
     }
-    std::fill_n(tile.F, channels * queries, Real{0});
     std::fill_n(tile.shift, queries, Real{0});
     std::fill_n(tile.sum, queries, Real{0});
 }
@@ -187,14 +240,10 @@ void write_results(strided_view<Real, 2> const& F, query_tile<Real, Registers> c
         each_square<Real>(std::min(count, queries), channels, [&](std::size_t q, std::size_t c) {
             auto const share = Real{1} / load(tile.sum + q);
             lanes<Real> square[n];
-            unrolled<n>([&](auto i)
-                            GENRENDER_ALWAYS_INLINE { square[i] = load(tile.F + (c + i) * queries + q) * share; });
+            auto const* const from = tile.F + c * queries + q;
+            unrolled<n>([&](auto i) GENRENDER_ALWAYS_INLINE { square[i] = load(from + i * queries) * share; });
             transpose<Real>(square);
-            unrolled<n>([&](auto i) GENRENDER_ALWAYS_INLINE {
-                if (q + i < count) {
-                    store(&F(q + i, c), square[i]);
-                }
-            });
+            for_each_row<n>(F, q, [&](auto i, Real* row) GENRENDER_ALWAYS_INLINE { store(row + c, square[i]); });
         });
     } else {
         for (std::size_t q = 0; q < count; ++q) {

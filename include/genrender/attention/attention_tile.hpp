@@ -3,9 +3,11 @@
 #pragma once
 
 #include <genrender/core/exponential.hpp>
+#include <genrender/core/strided_view.hpp>
 #include <genrender/core/vector_lanes.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 // With Q^T, P^T and F^T, the maximum, the sum and the rescaling of a query's softmax are those of a lane: nothing is
@@ -28,18 +30,30 @@ inline constexpr std::size_t tile_registers = many_vector_registers ? 4 : 2;
 /// at every new maximum).
 inline constexpr int headroom = 32;
 
-/// Keys and values of one head in tile_keys rows or fewer. `keys` is a multiple of strip_rows; the keys that fill it up
-/// repeat the last one, count 0 times and have values 0.
+/// Keys and values of one head in tile_keys rows or fewer. Behind the last key, all rows repeat it and count 0 times, so
+/// that the last strip is full and has a next one.
 template <class Real>
 struct key_tile {
-    Real* K;      ///< [keys, head_size]
-    Real* V;      ///< [keys, head_size]
-    Real* counts; ///< [keys]
+    std::array<Real const*, tile_keys + strip_rows> K; ///< [keys] rows of head_size numbers
+    std::array<Real const*, tile_keys> V;              ///< [keys] rows of head_size numbers
+    std::array<Real, tile_keys> counts;                ///< [keys]
     std::size_t keys;
     std::size_t head_size;
+    bool is_far; ///< whether each row may lie anywhere in memory; else they follow each other and are in a cache
+
+    /// Fills up behind the last of `keys`.
+    void repeat_last() {
+        auto const repeat = [&](auto& rows, auto const& last) {
+            std::fill(rows.begin() + static_cast<std::ptrdiff_t>(keys), rows.end(), last);
+        };
+        repeat(K, K[keys - 1]);
+        repeat(V, V[keys - 1]);
+        repeat(counts, Real{0});
+    }
 };
 
-/// A tile of queries of one head, a column each, and its online softmax so far.
+/// A tile of queries of one head, a column each, and its online softmax so far; before the first tile of keys, F holds
+/// anything.
 template <class Real, std::size_t Registers>
 struct query_tile {
     static constexpr std::size_t queries = Registers * lane_count<Real>;
@@ -55,9 +69,9 @@ struct query_tile {
 
 /// Subtracts more from the logits of those queries that have outgrown their headroom (all of them when `fresh`, before
 /// which there is nothing to rescale): from `strip`, and from all there is: the rows of weights before the strip, their
-/// sums `part`, and the tile.
+/// sums `part`, and the tile, of which F has `channels` so far.
 template <class Real, std::size_t Registers>
-[[gnu::noinline]] void shift_logits(query_tile<Real, Registers> const& tile, std::size_t head_size, Real* weights,
+[[gnu::noinline]] void shift_logits(query_tile<Real, Registers> const& tile, std::size_t channels, Real* weights,
                                     Real* strip, Real* part, bool fresh) {
     constexpr auto queries = query_tile<Real, Registers>::queries;
     for (std::size_t q = 0; q < queries; q += lane_count<Real>) {
@@ -80,7 +94,7 @@ template <class Real, std::size_t Registers>
         for (auto* row = weights; row != strip; row += queries) {
             rescale(row);
         }
-        for (std::size_t c = 0; c < head_size; ++c) {
+        for (std::size_t c = 0; c < channels; ++c) {
             rescale(tile.F + c * queries);
         }
         rescale(part);
@@ -88,7 +102,8 @@ template <class Real, std::size_t Registers>
     }
 }
 
-/// Writes the weights [strip_rows, queries] of the keys from `key` on and adds them to `part`.
+/// Writes the weights [strip_rows, queries] of the keys from `key` on and adds them to `part`. `fresh` is whether there
+/// was no tile of keys before.
 template <class Real, std::size_t Registers>
 void weigh_strip(query_tile<Real, Registers> const& tile, key_tile<Real> const& keys, std::size_t key, Real* weights,
                  Real* part, bool fresh) {
@@ -103,15 +118,27 @@ void weigh_strip(query_tile<Real, Registers> const& tile, key_tile<Real> const& 
         auto const shift = load(tile.shift + v * n);
         unrolled<strip_rows>([&](auto row) GENRENDER_ALWAYS_INLINE { logits[row][v] = shift; });
     });
+
+    // What comes from memory is asked for in good time: the next strip of keys, and all values before their product.
     auto const* Q = tile.Q;
-    auto const* K = keys.K + key * head_size;
-    for (std::size_t c = 0; c < head_size; ++c, Q += queries, ++K) {
-        lanes<Real> q[Registers];
-        unrolled<Registers>([&](auto v) GENRENDER_ALWAYS_INLINE { q[v] = load(Q + v * n); });
-        unrolled<strip_rows>([&](auto row) GENRENDER_ALWAYS_INLINE {
-            auto const k = K[row * head_size];
-            unrolled<Registers>([&](auto v) GENRENDER_ALWAYS_INLINE { logits[row][v] += q[v] * k; });
-        });
+    auto const* const K = &keys.K[key];
+    auto const* const V = &keys.V[key];
+    auto const step = keys.is_far ? cache_line_bytes / sizeof(Real) : head_size;
+    for (std::size_t c = 0; c < head_size;) {
+        if (keys.is_far) {
+            unrolled<strip_rows>([&](auto row) GENRENDER_ALWAYS_INLINE {
+                prefetch_to_read(K[strip_rows + row] + c);
+                prefetch_to_read(V[row] + c);
+            });
+        }
+        for (auto const end = std::min(c + step, head_size); c < end; ++c, Q += queries) {
+            lanes<Real> q[Registers];
+            unrolled<Registers>([&](auto v) GENRENDER_ALWAYS_INLINE { q[v] = load(Q + v * n); });
+            unrolled<strip_rows>([&](auto row) GENRENDER_ALWAYS_INLINE {
+                auto const k = K[row][c];
+                unrolled<Registers>([&](auto v) GENRENDER_ALWAYS_INLINE { logits[row][v] += q[v] * k; });
+            });
+        }
     }
 
     // Stay within the headroom.
@@ -119,10 +146,11 @@ void weigh_strip(query_tile<Real, Registers> const& tile, key_tile<Real> const& 
     unrolled<strip_rows * Registers>([&](auto i) GENRENDER_ALWAYS_INLINE {
         greatest = greater<Real>(greatest, logits[i / Registers][i % Registers]);
     });
-    if (fresh || any_greater<Real>(greatest, spread(Real{headroom}))) [[unlikely]] {
+    auto const first = fresh && key == 0;
+    if (first || any_greater<Real>(greatest, spread(Real{headroom}))) [[unlikely]] {
         unrolled<strip_rows * Registers>(
             [&](auto i) GENRENDER_ALWAYS_INLINE { store(strip + i * n, logits[i / Registers][i % Registers]); });
-        shift_logits(tile, head_size, weights, strip, part, fresh);
+        shift_logits(tile, fresh ? 0 : head_size, weights, strip, part, first);
         unrolled<strip_rows * Registers>(
             [&](auto i) GENRENDER_ALWAYS_INLINE { logits[i / Registers][i % Registers] = load(strip + i * n); });
     }
@@ -139,37 +167,50 @@ void weigh_strip(query_tile<Real, Registers> const& tile, key_tile<Real> const& 
     });
 }
 
-/// Adds weights [keys, queries] times `Rows` columns of V to as many rows of F. Sums of a tile of keys start from 0, so
-/// that rounding grows with the number of tiles and not with that of keys.
+/// Adds weights [keys, queries] times `Rows` columns of V to as many rows of F, or writes them if F is `fresh`. Sums of a
+/// tile of keys start from 0, so that rounding grows with the number of tiles and not with that of keys.
 template <std::size_t Rows, class Real, std::size_t Registers>
 void add_values(query_tile<Real, Registers> const& tile, key_tile<Real> const& keys, std::size_t channel,
-                Real const* weights) {
+                Real const* weights, bool fresh) {
     constexpr auto queries = query_tile<Real, Registers>::queries;
     constexpr auto n = lane_count<Real>;
     lanes<Real> sums[Rows][Registers]{};
-    auto const* V = keys.V + channel;
-    for (std::size_t k = 0; k < keys.keys; ++k, V += keys.head_size, weights += queries) {
+    auto const add_key = [&](Real const* V) GENRENDER_ALWAYS_INLINE {
         lanes<Real> w[Registers];
         unrolled<Registers>([&](auto v) GENRENDER_ALWAYS_INLINE { w[v] = load(weights + v * n); });
         unrolled<Rows>([&](auto row) GENRENDER_ALWAYS_INLINE {
             auto const value = V[row];
             unrolled<Registers>([&](auto v) GENRENDER_ALWAYS_INLINE { sums[row][v] += w[v] * value; });
         });
+        weights += queries;
+    };
+    if (keys.is_far) {
+        for (std::size_t k = 0; k < keys.keys; ++k) {
+            add_key(keys.V[k] + channel);
+        }
+    } else {
+        auto const* V = keys.V[0] + channel;
+        for (std::size_t k = 0; k < keys.keys; ++k, V += keys.head_size) {
+            add_key(V);
+        }
     }
     auto* const F = tile.F + channel * queries;
     unrolled<Rows * Registers>([&](auto i) GENRENDER_ALWAYS_INLINE {
-        store(F + i * n, load(F + i * n) + sums[i / Registers][i % Registers]);
+        auto const sum = sums[i / Registers][i % Registers];
+        store(F + i * n, fresh ? sum : load(F + i * n) + sum);
     });
 }
 
-/// Adds a tile of keys to the online softmax of a tile of queries. `weights` is scratch of tile_keys + 1 rows.
+/// Adds a tile of keys to the online softmax of a tile of queries, the first one if `fresh`. `weights` is scratch of
+/// tile_keys + 1 rows. Rows of `ahead` are about to be written and asked for meanwhile.
 template <class Real, std::size_t Registers>
-void attend_to_tile(query_tile<Real, Registers> const& tile, key_tile<Real> const& keys, Real* weights, bool fresh) {
+void attend_to_tile(query_tile<Real, Registers> const& tile, key_tile<Real> const& keys, Real* weights, bool fresh,
+                    strided_view<Real, 2> const& ahead = {}) {
     constexpr auto queries = query_tile<Real, Registers>::queries;
     auto* const part = weights + tile_keys * queries;
     std::fill_n(part, queries, Real{0});
     for (std::size_t key = 0; key < keys.keys; key += strip_rows) {
-        weigh_strip(tile, keys, key, weights, part, fresh && key == 0);
+        weigh_strip(tile, keys, key, weights, part, fresh);
     }
     for (std::size_t q = 0; q < queries; ++q) {
         tile.sum[q] += part[q];
@@ -177,12 +218,19 @@ void attend_to_tile(query_tile<Real, Registers> const& tile, key_tile<Real> cons
 
     // Share the channels out evenly, so that no strip is so short as to wait for its own sums.
     auto const strips = (keys.head_size + strip_rows - 1) / strip_rows;
+    auto const rows_ahead = (ahead.extent(0) + strips - 1) / strips;
+    std::size_t asked = 0;
     for (std::size_t strip = 0; strip < strips; ++strip) {
+        for (auto const end = std::min(asked + rows_ahead, ahead.extent(0)); asked < end; ++asked) {
+            for (std::size_t c = 0; c < ahead.extent(1); c += cache_line_bytes / sizeof(Real)) {
+                prefetch_to_write(&ahead(asked, c));
+            }
+        }
         auto const channel = strip * keys.head_size / strips;
         auto const rows = (strip + 1) * keys.head_size / strips - channel;
         unrolled<strip_rows>([&](auto less_one) {
             if (rows == less_one + 1) {
-                add_values<less_one + 1>(tile, keys, channel, weights);
+                add_values<less_one + 1>(tile, keys, channel, weights, fresh);
             }
         });
     }

@@ -54,4 +54,29 @@ typename Call::features_type stored_features(Call& call, typename Call::features
     }
 }
 
+/// Features that can be kept in 16 bits without a call, an optional capability of what a static graph puts out.
+///
+/// expression           | type       | meaning
+/// ---------------------|------------|--------------------------------------------------------------------------------
+/// `stored(x, storage)` | `Features` | as `call.stored(x, storage)` of a storing_attention_call; found in the namespace
+///                      |            | of the features
+template <class Features>
+concept storable_features = requires(Features const& x, feature_storage storage) {
+    { stored(x, storage) } -> std::convertible_to<Features>;
+};
+
+/// x in the format. Throws value_error if it is to be another one than it has and there is no `stored` for it.
+template <class Features>
+Features stored_features(Features x, feature_storage storage) {
+    if (storage == feature_storage::same) {
+        return x;
+    }
+    if constexpr (storable_features<Features>) {
+        return stored(x, storage);
+    } else {
+        throw value_error("stored_features: storage is of 16 bits, expected feature_storage::same for features without "
+                          "`stored`");
+    }
+}
+
 } // namespace genrender

@@ -75,6 +75,11 @@ public:
 
     friend strided_view<Real, 3> to_view(host_features const& features) { return features.view(); }
 
+    /// x kept in a format, as storable_features has it.
+    friend host_features stored(host_features const& x, feature_storage storage) {
+        return storage == feature_storage::same ? x : rounded(x.view(), storage);
+    }
+
 private:
     template <class T>
     strided_view<T, 3> own(std::array<std::size_t, 3> const& extents) {

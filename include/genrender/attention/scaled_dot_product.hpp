@@ -45,7 +45,7 @@ void each_query_tile(Real* memory, std::size_t queries, std::size_t head_size, B
     }
 }
 
-/// Attention of some queries of one head, F and Q [queries, head_size]. Each tile of keys is read once for all of them.
+/// Attention of some queries of one head, F and Q [queries, head_size]. Each key is read or copied once for all of them.
 template <class Real>
 void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::span<key_value_view<Real> const> blocks,
                  std::size_t head) {
@@ -55,7 +55,8 @@ void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::sp
     auto const tiles = (queries + full::queries - 1) / full::queries;
     scratch_memory<Real> memory(key_tiles<Real>::scratch(head_size) + (tile_keys + 1) * full::queries +
                                 tiles * full::size(head_size));
-    key_tiles<Real> keys(blocks, head, head_size, memory);
+    // A single tile of queries reads each key once.
+    key_tiles<Real> keys(blocks, head, head_size, memory, tiles == 1);
     auto* const weights = memory.take((tile_keys + 1) * full::queries);
     auto* const tile_memory = memory.take(tiles * full::size(head_size));
 
@@ -65,8 +66,9 @@ void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::sp
         read_queries(tile, Q.slice(first, count), scale);
     });
     for (bool fresh = true; keys.next(); fresh = false) {
-        each_query_tile(tile_memory, queries, head_size, [&](auto const& tile, std::size_t, std::size_t) {
-            attend_to_tile(tile, keys.tile(), weights, fresh);
+        each_query_tile(tile_memory, queries, head_size, [&](auto const& tile, std::size_t first, std::size_t count) {
+            auto const ahead = F.slice(first, keys.is_last() ? count : 0);
+            attend_to_tile(tile, keys.tile(), weights, fresh, ahead);
         });
     }
     each_query_tile(tile_memory, queries, head_size, [&](auto const& tile, std::size_t first, std::size_t count) {

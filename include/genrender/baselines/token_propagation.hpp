@@ -37,6 +37,9 @@ public:
         return call.mix(call.value(call.f()), *kept->F_KF, rows_at(call.place().site, call.frames()), Real{1});
     }
 
+    /// Where the bank holds nothing.
+    bool is_plain_at(attention_place place) const { return bank_->find(place) == nullptr; }
+
     /// F_KF that is taken over at a place; null where the network stays as it is.
     Features const* propagated_features(attention_place place) const {
         auto const* const kept = bank_->find(place);

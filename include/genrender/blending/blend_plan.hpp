@@ -48,11 +48,13 @@ enum class texel_average : std::uint8_t {
     by_quality ///< by how well they see it, where the correspondence says (graded_correspondence_map)
 };
 
-/// A correspondence_map that answers for all tokens of a frame at once: `map.matches(from, to)` holds what
-/// `map.token_at(to, *map.point_at(from, t))` and quality_at are for every token t, or is null where there is more to say than that.
+/// A correspondence_map that answers for all tokens of a frame at once: `map.matches(from, to)` holds, for each frame of
+/// `to`, what `map.token_at(to[k], *map.point_at(from, t))` and quality_at are for every token t, or is empty where there
+/// is more to say than that.
 template <class Map>
-concept matched_correspondence_map = correspondence_map<Map> && requires(Map const& map, frame_index i) {
-    { map.matches(i, i) } -> std::same_as<std::shared_ptr<token_matches const>>;
+concept matched_correspondence_map = correspondence_map<Map> &&
+    requires(Map const& map, frame_index i, std::span<frame_index const> to) {
+    { map.matches(i, to) } -> std::same_as<std::vector<std::shared_ptr<token_matches const>>>;
 };
 
 namespace detail {
@@ -70,7 +72,7 @@ blend_plan<Real> plan_of_matches(std::span<std::shared_ptr<token_matches const> 
     }
     std::vector<std::uint32_t const*> token;
     std::vector<std::uint8_t const*> is_shown;
-    std::vector<double const*> quality;
+    std::vector<float const*> quality;
     for (auto const& match : matches) {
         token.push_back(match->tokens.data());
         is_shown.push_back(match->is_shown.data());
@@ -87,12 +89,13 @@ blend_plan<Real> plan_of_matches(std::span<std::shared_ptr<token_matches const> 
         double sum = 0;
         for (std::size_t k = 0; k < keyframes; ++k) {
             seen += is_shown[k][t];
-            sum += quality[k][t];
+            sum += double{quality[k][t]};
         }
         auto const is_graded = average == texel_average::by_quality && sum > 0;
+        auto const share_of_one = is_graded ? 1 / sum : 0;
         auto const first = entries;
         for (std::size_t k = 0; k < keyframes && seen > 0; ++k) {
-            auto const share = is_graded ? static_cast<Real>(quality[k][t] / sum) : alike[seen];
+            auto const share = is_graded ? static_cast<Real>(double{quality[k][t]} * share_of_one) : alike[seen];
             plan.sources[entries] = static_cast<std::uint32_t>(k * tokens) + token[k][t];
             plan.weights[entries] = unified_weight<Real>(entries - first, share, first_fill_share);
             entries += is_shown[k][t];
@@ -123,11 +126,8 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
                   first_fill_share, "a share in [0, 1]");
 
     if constexpr (matched_correspondence_map<Map>) {
-        std::vector<std::shared_ptr<token_matches const>> matches;
-        for (auto const keyframe : keyframes) {
-            matches.push_back(map.matches(i, keyframe));
-        }
-        if (matches[0] != nullptr) {
+        auto const matches = map.matches(i, keyframes);
+        if (!matches.empty()) {
             return detail::plan_of_matches<Real>(matches, first_fill_share, average);
         }
     }

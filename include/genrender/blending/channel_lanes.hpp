@@ -11,8 +11,10 @@
 #include <cstring>
 #include <type_traits>
 
-#if defined(__GNUC__) && defined(__F16C__)
+#if defined(__GNUC__) && (defined(__AVX2__) || defined(__F16C__))
 #include <immintrin.h>
+#elif defined(__GNUC__) && defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 namespace genrender {
@@ -28,8 +30,25 @@ namespace detail {
 /// `Count` elements of 16 bits in the lower halves of 32.
 template <std::size_t Count, half_storage Stored>
 register_vector<std::uint32_t, Count> bits_of(Stored const* from) {
-    return __builtin_convertvector((load_as<register_vector<std::uint16_t, Count>>(from)),
-                                   register_vector<std::uint32_t, Count>);
+    using bits = register_vector<std::uint32_t, Count>;
+    // Some compilers take four instructions to widen a register and put it together again where there is one.
+#if defined(__AVX512F__)
+    if constexpr (Count == 16) {
+        return bits_as<bits>(_mm512_maskz_cvtepu16_epi32(0xFFFF, load_as<__m256i>(from)));
+    }
+#endif
+#if defined(__AVX2__)
+    if constexpr (Count == 8) {
+        return bits_as<bits>(_mm256_cvtepu16_epi32(load_as<__m128i>(from)));
+    }
+#endif
+#if defined(__SSE2__)
+    if constexpr (Count == 4) {
+        auto const half = _mm_loadl_epi64(reinterpret_cast<__m128i const*>(from));
+        return bits_as<bits>(_mm_unpacklo_epi16(half, _mm_setzero_si128()));
+    }
+#endif
+    return __builtin_convertvector((load_as<register_vector<std::uint16_t, Count>>(from)), bits);
 }
 
 /// `Count` values of bfloat16 as floats.

@@ -2,8 +2,11 @@
 // Elements side by side in one register of the target, for kernels that no compiler vectorises by itself.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace genrender::detail {
 
@@ -52,5 +55,32 @@ To bits_as(From const& from) {
     std::memcpy(&to, &from, sizeof(to));
     return to;
 }
+
+#if defined(__GNUC__)
+
+/// The elements of a register folded into one by `fold(a, b)`, half onto half.
+template <class Vector, class Fold>
+auto folded(Vector const& values, Fold const& fold) {
+    using T = std::remove_cvref_t<decltype(values[0])>;
+    constexpr auto count = sizeof(Vector) / sizeof(T);
+    if constexpr (count == 2) {
+        return fold(values[0], values[1]);
+    } else {
+        std::array<register_vector<T, count / 2>, 2> halves;
+        std::memcpy(halves.data(), &values, sizeof(values));
+        return folded(fold(halves[0], halves[1]), fold);
+    }
+}
+
+/// 0, 1, 2, ...
+inline register_vector<std::int32_t> lane_numbers() {
+    register_vector<std::int32_t> lane{};
+    for (std::size_t n = 0; n < register_lanes<std::int32_t>; ++n) {
+        lane[n] = static_cast<std::int32_t>(n);
+    }
+    return lane;
+}
+
+#endif
 
 } // namespace genrender::detail

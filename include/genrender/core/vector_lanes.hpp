@@ -93,6 +93,23 @@ GENRENDER_ALWAYS_INLINE inline bool any_greater(std::type_identity_t<lanes<Real>
     }
 }
 
+/// Bytes that come from memory together.
+inline constexpr std::size_t cache_line_bytes = 64;
+
+/// Asks for the cache line at an address to be in the second cache when it is read. Changes no value.
+GENRENDER_ALWAYS_INLINE inline void prefetch_to_read([[maybe_unused]] void const* at) {
+#if defined(__GNUC__)
+    __builtin_prefetch(at, 0, 2);
+#endif
+}
+
+/// The same for an address that will be written.
+GENRENDER_ALWAYS_INLINE inline void prefetch_to_write([[maybe_unused]] void const* at) {
+#if defined(__GNUC__)
+    __builtin_prefetch(at, 1, 2);
+#endif
+}
+
 /// Rows become columns of a square of lane_count x lane_count numbers.
 template <class Real>
 GENRENDER_ALWAYS_INLINE inline void transpose(lanes<Real> (&rows)[lane_count<Real>]) {

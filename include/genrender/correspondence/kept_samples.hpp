@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -33,71 +34,74 @@ class kept_samples {
 public:
     using point_type = footprint_point<D>;
 
-    /// A pixel that speaks for its cell.
-    struct sample {
+    /// A token that shows a point.
+    struct speaker {
         token_index token;
-        float purity = 0; ///< share of the cell's pixels that show the sample's object
-        std::array<float, D> place{};
-        std::optional<surface_footprint<D>> footprint;
-        double density = 0; ///< pixels a unit of canonical area
-
-        /// How well the frame shows what the sample shows: purity times density.
-        double quality() const { return double{purity} * density; }
+        float quality = 0; ///< how well: the share of the cell that is the object's, times pixels a unit of area
     };
 
-    void add(sample const& s) { samples_.push_back(s); }
+    /// A pixel that speaks for its cell.
+    struct sample : grid_sample<D> {
+        speaker says;
+    };
 
-    /// Makes all that was added ready to be asked, in a frame whose cells have `cell` pixels and keep samples `spacing`
-    /// of them apart. A sample reaches `reach` half cells.
-    void compile(double reach, grid_extents cell, double spacing) {
-        reach_ = reach;
-        height_ = static_cast<double>(cell.height);
-        width_ = static_cast<double>(cell.width);
-        std::vector<std::array<float, D>> places;
-        std::vector<grid_sample<D>> for_grid;
-        for_grid.reserve(samples_.size());
-        for (auto const& s : samples_) {
-            places.push_back(s.place);
-            for_grid.push_back({static_cast<std::uint32_t>(for_grid.size()), s.place, s.footprint});
+    kept_samples() = default;
+
+    /// Of pixels in a frame whose cells have `cell` pixels and keep samples `spacing` of them apart. A sample reaches
+    /// `reach` half cells.
+    kept_samples(std::vector<sample> samples, double reach, grid_extents cell, double spacing)
+        : reach_(reach), height_(static_cast<double>(cell.height)), width_(static_cast<double>(cell.width)),
+          grid_(samples, reach, height_, width_, spacing) {
+        shown_.assign(samples.begin(), samples.end());
+        speakers_.reserve(samples.size());
+        for (auto const& s : samples) {
+            speakers_.push_back(s.says);
         }
-        tree_ = sample_tree<D>(std::move(places));
-        grid_ = sample_grid<D>(for_grid, reach, height_, width_, spacing);
     }
 
-    /// The sample that shows a point; null if none does.
-    sample const* sample_at(point_type const& point) const {
+    /// The number of the sample that shows a point; none if none does.
+    std::optional<std::uint32_t> number_at(point_type const& point) const {
         if (point.footprint) {
             using verdict = typename sample_grid<D>::verdict;
             auto const answer = grid_.find(point.place, *point.footprint);
             if (answer.is != verdict::unsure) {
-                return answer.is == verdict::shown ? &samples_[answer.number] : nullptr;
+                return answer.is == verdict::shown ? std::optional(answer.number) : std::nullopt;
             }
         }
-        return sample_by_tree(point);
+        return number_by_tree(point);
     }
 
     /// The same in double precision, without the grid.
-    sample const* sample_by_tree(point_type const& point) const {
-        sample const* closest = nullptr;
+    std::optional<std::uint32_t> number_by_tree(point_type const& point) const {
+        std::optional<std::uint32_t> closest;
         double closest_distance = 0;
-        tree_.visit_nearest(point.place, [&](std::size_t number) {
-            auto const& s = samples_[number];
-            auto const distance = screen_distance(s, point);
+        tree().visit_nearest(point.place, [&](std::size_t number) {
+            auto const distance = screen_distance(shown_[number], point);
             if (!distance || *distance > reach_) {
                 return;
             }
-            if (closest == nullptr || std::pair(*distance, s.token) < std::pair(closest_distance, closest->token)) {
-                closest = &s;
+            if (!closest || std::pair(*distance, speakers_[number].token) <
+                                std::pair(closest_distance, speakers_[*closest].token)) {
+                closest = static_cast<std::uint32_t>(number);
                 closest_distance = *distance;
             }
         });
         return closest;
     }
 
+    /// Bytes of so many samples, about.
+    static constexpr std::size_t expected_bytes(std::size_t count) {
+        return count * (sizeof(grid_sample<D>) + sizeof(speaker)) + sample_bins<D>::expected_bytes(count) +
+               sample_tree<D>::expected_bytes(count);
+    }
+
+    /// Who speaks for a sample.
+    speaker const& speaker_of(std::uint32_t number) const { return speakers_[number]; }
+
 private:
     /// Where a point lies from a kept pixel on the screen of its frame, in half cells along the axis on which it is
     /// further; none if it lies on a surface that faces the other way or not in the pixel's plane.
-    std::optional<double> screen_distance(sample const& s, point_type const& point) const {
+    std::optional<double> screen_distance(grid_sample<D> const& s, point_type const& point) const {
         // Before all else: mirrored halves may have exactly the same places.
         if (s.footprint && point.footprint && !faces_alike(*s.footprint, *point.footprint)) {
             return std::nullopt;
@@ -118,12 +122,27 @@ private:
         return std::max(std::abs(offset.down) / height_, std::abs(offset.right) / width_) * 2;
     }
 
-    std::vector<sample> samples_;
-    sample_tree<D> tree_;
-    sample_grid<D> grid_;
+    /// Made when it is asked for first: most frames have no need of it.
+    sample_tree<D> const& tree() const {
+        std::call_once(is_tree_made_, [this] {
+            std::vector<std::array<float, D>> places;
+            places.reserve(shown_.size());
+            for (auto const& s : shown_) {
+                places.push_back(s.place);
+            }
+            tree_ = sample_tree<D>(std::move(places));
+        });
+        return tree_;
+    }
+
     double reach_ = 0;
     double height_ = 1;
     double width_ = 1;
+    sample_grid<D> grid_;
+    std::vector<grid_sample<D>> shown_; ///< by number, as the speakers
+    std::vector<speaker> speakers_;
+    mutable std::once_flag is_tree_made_;
+    mutable sample_tree<D> tree_;
 };
 
 } // namespace genrender

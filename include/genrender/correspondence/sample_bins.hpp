@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace genrender {
@@ -26,8 +28,9 @@ public:
 
     sample_bins() = default;
 
-    /// Pixels of one object in one frame; `spacing` is how many of the map's pixels kept ones lie apart.
-    sample_bins(std::vector<grid_sample<D>> const& samples, double reach, double rows, double columns, double spacing)
+    /// Of one object's pixels in one frame, which it brings in order; `spacing` is how many of the map's lie between them.
+    template <std::derived_from<grid_sample<D>> Sample>
+    sample_bins(std::vector<Sample>& samples, double reach, double rows, double columns, double spacing)
         : reach_(static_cast<float>(reach)), half_rows_(static_cast<float>(rows / 2)),
           half_columns_(static_cast<float>(columns / 2)) {
         lay_out(samples, spacing);
@@ -37,7 +40,7 @@ public:
 
     float reach() const { return reach_; }
 
-    /// The pixels, bin by bin.
+    /// The pixels, in their order.
     pack const* packs() const { return packs_.data(); }
 
     /// The bin of a place; none outside of all bins.
@@ -63,6 +66,12 @@ public:
 
     /// Whether single precision tells the bins' borders apart.
     bool is_precise() const { return is_precise_; }
+
+    /// Bytes of bins of so many pixels, about: in space most bins hold none.
+    static constexpr std::size_t expected_bytes(std::size_t count) {
+        constexpr std::size_t of_a_bin = sizeof(std::uint32_t) + sizeof(std::uint8_t);
+        return count * (sizeof(pack) / pack::size) + (D > 2 ? 12 * count : 5 * count) / 4 * of_a_bin;
+    }
 
     /// The pixels in bins at most `around` bins away along each axis.
     struct block {
@@ -127,7 +136,8 @@ private:
         return number;
     }
 
-    void lay_out(std::vector<grid_sample<D>> const& samples, double spacing) {
+    template <class Sample>
+    void lay_out(std::vector<Sample> const& samples, double spacing) {
         std::array<float, D> high{};
         std::vector<double> sides;
         for (std::size_t n = 0; n < samples.size(); ++n) {
@@ -173,26 +183,31 @@ private:
         }
     }
 
-    void sort(std::vector<grid_sample<D>> const& samples, double rows, double columns) {
+    template <class Sample>
+    void sort(std::vector<Sample>& samples, double rows, double columns) {
         // Every pixel lies in a bin: the bins were laid out around them.
-        auto const bin_of = [&](grid_sample<D> const& s) { return number_of(bin_at(s.place).value_or(bin_type{})); };
+        auto const bin_of = [&](Sample const& s) { return number_of(bin_at(s.place).value_or(bin_type{})); };
         for (auto const& s : samples) {
             ++begins_[bin_of(s) + 1];
         }
         std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
         auto next = begins_;
+        std::vector<Sample> sorted(samples.size());
         packs_.resize((samples.size() + pack::size - 1) / pack::size);
         for (auto const& s : samples) {
             auto const at = next[bin_of(s)]++;
+            sorted[at] = s;
             packs_[at / pack::size].set(at % pack::size, s, rows, columns);
             if (!s.footprint) {
                 lonely_.push_back(s.place);
             }
         }
+        samples = std::move(sorted);
     }
 
     /// Marks the bins that a pixel's reach touches: in others nothing is shown.
-    void mark_reached(std::vector<grid_sample<D>> const& samples, double reach, double rows, double columns) {
+    template <class Sample>
+    void mark_reached(std::vector<Sample> const& samples, double reach, double rows, double columns) {
         reached_from_.fill(std::numeric_limits<double>::infinity());
         reached_to_.fill(-std::numeric_limits<double>::infinity());
         for (auto const& s : samples) {
@@ -257,16 +272,11 @@ private:
     template <class Visit>
     void for_each_row(std::array<std::size_t, D> const& first, std::array<std::size_t, D> const& last,
                       Visit&& visit) const {
-        if constexpr (D == 2) {
+        auto const last_layer = D > 2 ? last[D - 1] : 0;
+        for (auto z = D > 2 ? first[D - 1] : 0; z <= last_layer; ++z) {
             for (auto y = first[1]; y <= last[1]; ++y) {
-                visit(y * bins_[0] + first[0], y * bins_[0] + last[0] + 1);
-            }
-        } else {
-            for (auto z = first[2]; z <= last[2]; ++z) {
-                for (auto y = first[1]; y <= last[1]; ++y) {
-                    auto const row = (z * bins_[1] + y) * bins_[0];
-                    visit(row + first[0], row + last[0] + 1);
-                }
+                auto const row = (z * bins_[1] + y) * bins_[0];
+                visit(row + first[0], row + last[0] + 1);
             }
         }
     }
@@ -283,7 +293,7 @@ private:
     std::array<double, D> reached_to_{};
     std::vector<std::uint32_t> begins_;        ///< of each bin's pixels, and the end
     std::vector<std::uint8_t> is_reached_;     ///< [bins]
-    std::vector<pack> packs_;                  ///< pixels bin by bin
+    std::vector<pack> packs_;                  ///< of the pixels, bin by bin
     std::vector<std::array<float, D>> lonely_; ///< places of the pixels without footprints
 };
 

@@ -7,16 +7,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 
 namespace genrender {
 
-/// A kept pixel: its number, by which who asks knows it, and what it shows.
+/// What a kept pixel shows.
 template <std::size_t D>
 struct grid_sample {
-    std::uint32_t number = 0;
     std::array<float, D> place{};
     std::optional<surface_footprint<D>> footprint;
 };
@@ -30,7 +28,7 @@ inline std::array<double, 3> normal_of(surface_footprint<3> const& footprint) {
 }
 
 /// Pixels side by side: their places; the ways right and down on the screen in half cells and, in space, the normal in
-/// units of the greatest distance from the plane; their numbers.
+/// units of the greatest distance from the plane.
 template <std::size_t D>
 struct alignas(64) sample_pack {
     static constexpr std::size_t size = 16;
@@ -39,12 +37,10 @@ struct alignas(64) sample_pack {
 
     std::array<std::array<float, size>, D> places;
     std::array<std::array<float, size>, D*(D > 2 ? 3 : 2)> measures; ///< no numbers where there are none
-    std::array<std::int32_t, size> numbers;
 
     /// Fills one of the pixels, of a frame whose cells are `rows` x `columns` of the map's pixels.
     void set(std::size_t at, grid_sample<D> const& s, double rows, double columns) {
         using of = surface_footprint<D>;
-        numbers[at] = static_cast<std::int32_t>(s.number);
         for (std::size_t d = 0; d < D; ++d) {
             places[d][at] = s.place[d];
         }

@@ -14,8 +14,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace genrender {
 
@@ -41,7 +43,7 @@ public:
     /// A surface point of the map that was chosen; others are of no use to it.
     using point_type = std::variant<typename footprints::point_type, texel_grid::point_type>;
 
-    /// Compiles maps for feature maps of `grid`. Throws as the chosen map does, value_error for texels of maps that are
+    /// Of maps for feature maps of `grid`; what views view must outlive it. Throws as the chosen map does, value_error for texels of maps that are
     /// not UV maps.
     template <canonical_maps Maps, parallel_loop Loop = sequential_loop>
         requires(Maps::dimensions == D)
@@ -66,9 +68,9 @@ public:
     }
 
     /// footprint_map's matches; none of texels, which several tokens may show.
-    std::shared_ptr<token_matches const> matches(frame_index from, frame_index to) const {
+    std::vector<std::shared_ptr<token_matches const>> matches(frame_index from, std::span<frame_index const> to) const {
         auto const* const map = std::get_if<footprints>(&map_);
-        return map != nullptr ? map->matches(from, to) : nullptr;
+        return map != nullptr ? map->matches(from, to) : std::vector<std::shared_ptr<token_matches const>>{};
     }
 
     /// Texels may be shown by several tokens, footprints by one.

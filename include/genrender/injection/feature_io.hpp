@@ -18,7 +18,8 @@
 namespace genrender {
 
 /// The extra inputs of one run of a static graph at one place. Every member is known before the graph starts, because
-/// Alg. 1 finishes the keyframe pass before the injected pass begins. What it points to lives as long as the processor.
+/// Alg. 1 finishes the keyframe pass before the injected pass begins. What it points to lives as long as the processor
+/// and is kept as the recorder was told (feature_storage): the graph's own tensors, or their values in 16 bits.
 template <class Features, class Real>
 struct feature_inputs {
     bool attends_to_stack = false;  ///< eq. 3: keys and values of all frames of the stack
@@ -66,8 +67,10 @@ feature_inputs<Features, Real> inputs_at(injector<Features, Real> const& pass, a
     return inputs;
 }
 
-/// Hands the graph's extra outputs f and F [frames, tokens, channels] of a place to the pass that asked for them. The
-/// handles are kept until the step ends.
+/// Hands the graph's extra outputs f and F [frames, tokens, channels] of a place to the pass that asked for them, which
+/// keeps until the step ends the handles, or their values in the 16 bits that the recorder was told. F_KF is then the
+/// same to the bit as where the processor is called back; there K_KF and V_KF are rounded, here the f_KF that the graph
+/// makes them of. Throws value_error if such features cannot be stored (storable_features).
 template <class Features>
 void record_features(recorder<Features> const& pass, attention_place place, std::type_identity_t<Features> f,
                      std::type_identity_t<Features> F) {

@@ -42,7 +42,8 @@ public:
         : bank_(&bank), keyframes_(keyframes), rows_(std::move(rows)), settings_(std::move(settings)) {}
 
     /// F_out of eq. 6, where F_hat attends over the sources of eq. 5. Throws value_error if the keyframe pass ran as a
-    /// static graph, which gives no K_KF.
+    /// static graph, which gives no K_KF, and shape_error if K_KF or V_KF is of another number of frames than there are
+    /// keyframes (pre_attention_sources).
     template <attention_call Call>
     Features operator()(Call& call) const {
         auto const frames = call.frames();

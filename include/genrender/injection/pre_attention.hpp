@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/attention/attention_call.hpp>
+#include <genrender/core/error.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -10,14 +11,33 @@
 
 namespace genrender {
 
+namespace detail {
+
+/// Throws shape_error if features that tell their extents are of another number of frames.
+template <class Features>
+void require_frames(char const* function, char const* argument, Features const& x, std::size_t frames) {
+    if constexpr (requires { x.extents()[0]; }) {
+        if (x.extents()[0] != frames) {
+            auto expected = x.extents();
+            expected[0] = frames;
+            require_extents(function, argument, x.extents(), expected);
+        }
+    }
+}
+
+} // namespace detail
+
 /// What frame `own` of K and V attends to: K^i = W^K [f^i, f_KF] and V^i = W^V [f^i, f_KF], its own tokens first and
 /// then those of the `keyframes` frames of K_KF and V_KF in their order, none of them joined in memory. `left_out`
 /// drops one keyframe, for readings in which a frame that is itself a keyframe does not meet itself twice. The result
-/// points to its arguments.
+/// points to its arguments. Throws shape_error if K_KF or V_KF tell their `extents()` and are of another number of
+/// frames.
 template <class Features>
 std::vector<key_value_block<Features>>
 pre_attention_sources(Features const& K, Features const& V, std::size_t own, Features const& K_KF, Features const& V_KF,
                       std::size_t keyframes, std::optional<std::size_t> left_out = std::nullopt) {
+    detail::require_frames("pre_attention_sources", "K_KF", K_KF, keyframes);
+    detail::require_frames("pre_attention_sources", "V_KF", V_KF, keyframes);
     std::vector<key_value_block<Features>> sources{{&K, &V, own}};
     for (std::size_t k = 0; k < keyframes; ++k) {
         if (k != left_out) {

@@ -91,8 +91,10 @@ void recommend_on_object(object_check const& object, double token_pixels, recomm
 } // namespace detail
 
 /// Recommendations on the maps alone, those on frames first, then by object; `finest` is the finest feature grid.
+/// Frames without background are worth a sentence only if the run `needs_background`.
 inline std::vector<recommendation> recommendations_on(map_check const& check, grid_extents finest,
-                                                      recommendation_thresholds const& from = {}) {
+                                                      recommendation_thresholds const& from = {},
+                                                      bool needs_background = true) {
     using enum recommendation_kind;
     std::vector<recommendation> result;
     if (check.frames.empty() || check.grid.size() == 0) {
@@ -114,7 +116,8 @@ inline std::vector<recommendation> recommendations_on(map_check const& check, gr
         }
     };
     recommend_frames(nothing_visible, [](frame_check const& frame) { return frame.covered == 0; });
-    recommend_frames(no_background, [](frame_check const& frame) { return frame.covered == frame.pixels; });
+    recommend_frames(no_background,
+                     [&](frame_check const& frame) { return needs_background && frame.covered == frame.pixels; });
     recommend_frames(identical_frames, [](frame_check const& frame) { return frame.same_as_previous; });
     if (check.frames.size() == 1) {
         result.push_back({.kind = one_frame, .figure = 1});

@@ -55,6 +55,18 @@ struct preflight_report {
 
 namespace detail {
 
+/// Whether latent normalisation takes place and leaves out frames without background.
+template <class Real>
+bool needs_background(render_settings<Real> const& settings) {
+    auto const& by = settings.normalization;
+    for (std::size_t step = 0; by.enabled && by.fallback == without_background::skip && step < settings.steps; ++step) {
+        if (is_in_window(step, settings.steps, by.window_begin, by.window_end)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /// Draws the keyframes of some steps that have them, or notes why that cannot be.
 template <class Real>
 void draw_sample_steps(preflight_report& report, render_settings<Real> const& settings, std::size_t most) {
@@ -154,8 +166,8 @@ preflight_report preflight(Maps const& maps, std::vector<grid_extents> grids, re
                        (Maps::dimensions * sizeof(float) + sizeof(std::uint32_t) + sizeof(std::uint8_t));
     report.map_seconds = seconds_since(start);
     std::sort(grids.begin(), grids.end(), [](auto const& a, auto const& b) { return a.size() > b.size(); });
-    report.recommendations =
-        recommendations_on(report.maps, grids.empty() ? grid_extents{} : grids.front(), how.thresholds);
+    report.recommendations = recommendations_on(report.maps, grids.empty() ? grid_extents{} : grids.front(),
+                                                how.thresholds, detail::needs_background(settings));
     if (report.maps.frames.empty() || maps.grid().size() == 0) {
         return report;
     }

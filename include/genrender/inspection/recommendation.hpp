@@ -120,7 +120,7 @@ inline std::string recommendation::sentence() const {
     auto const in_frames = (frames.size() == 1 ? "frame " : "frames ") + ranges_text(frames);
     auto const share = detail::percent(figure);
     auto const number = detail::short_number(figure);
-    auto const position = ": use rest positions as canonical coordinates";
+    std::string const rest_positions = "use rest positions as canonical coordinates";
     switch (kind) {
     case no_frames:
         return "the maps hold no pixels: give at least one frame";
@@ -137,17 +137,17 @@ inline std::string recommendation::sentence() const {
         return "coordinates of " + of_object + " are NaN or infinite at " + std::to_string(std::llround(figure)) +
                " pixels of " + in_frames + ", which a run refuses: mark them as background or write them again";
     case degenerate:
-        return "coordinates of " + of_object + " do not change over " + share +
-               " of its pixels: unwrap it anew or use rest positions as canonical coordinates";
+        return "coordinates of " + of_object + " do not change over " + share + " of its pixels: unwrap it anew or " +
+               rest_positions;
     case tiny_object:
         return of_object + " covers " + number +
                " map pixels a frame, less than a token of the finest grid: it keeps its own features";
     case mirrored:
-        return "UVs of " + of_object + " are mirrored over " + share + " of its pixels" + position;
+        return "UVs of " + of_object + " are mirrored over " + share + " of its pixels: " + rest_positions;
     case overlapping:
-        return "UVs of " + of_object + " overlap over " + share + " of its pixels" + position;
+        return "UVs of " + of_object + " overlap over " + share + " of its pixels: " + rest_positions;
     case tiled:
-        return "UVs of " + of_object + " repeat whole tiles apart over " + share + " of its pixels" + position;
+        return "UVs of " + of_object + " repeat whole tiles apart over " + share + " of its pixels: " + rest_positions;
     case out_of_range:
         return "UVs of " + of_object + " lie outside [0, 1] at " + share +
                " of its pixels: say whether the texture repeats or ends there";
@@ -161,7 +161,7 @@ inline std::string recommendation::sentence() const {
                " of its silhouette: render one sample a pixel, without a filter";
     case many_seams:
         return share + " of neighbouring pixels of " + of_object +
-               " have a seam between them: unwrap it into larger charts or use rest positions as canonical coordinates";
+               " have a seam between them: unwrap it into larger charts or " + rest_positions;
     case keyframes_refused:
         return "keyframes cannot be drawn: " + detail;
     case grid_refused:

@@ -59,12 +59,13 @@ public:
     /// Whether frames of the stack attend to each other at a place; asked by engines whose graph is static.
     bool attends_to_stack(attention_place place) const { return extended_ && takes_part_(place); }
 
-    /// Keeps features that a static graph gave out: its input f_KF and output F_KF at a place that takes part.
+    /// Keeps features that a static graph gave out: its input f_KF and output F_KF at a place that takes part. Throws
+    /// value_error if they cannot be stored in the format asked for.
     void record(attention_place place, Features f_KF, Features F_KF) const {
         if (takes_part_(place)) {
             keyframe_features<Features> kept;
-            kept.f_KF = std::move(f_KF);
-            kept.F_KF = std::move(F_KF);
+            kept.f_KF = stored_features(std::move(f_KF), storage_);
+            kept.F_KF = stored_features(std::move(F_KF), storage_);
             bank_->put(place, std::move(kept));
         }
     }

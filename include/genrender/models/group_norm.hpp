@@ -117,8 +117,11 @@ private:
             auto const first = i * strip;
             auto c = first;
             if (first + strip <= channels) {
-                add_registers<4>(sum.data(), squares.data(), in, first);
+                add_registers<strip / lane>(sum.data(), squares.data(), in, first);
                 return;
+            }
+            for (; c + 4 * lane <= channels; c += 4 * lane) {
+                add_registers<4>(sum.data(), squares.data(), in, c);
             }
             for (; c + lane <= channels; c += lane) {
                 add_registers<1>(sum.data(), squares.data(), in, c);
@@ -156,7 +159,7 @@ private:
 
     static constexpr auto lane = detail::lane_count<double>;
     /// Channels whose sums are in registers at once.
-    static constexpr std::size_t strip = 4 * lane;
+    static constexpr std::size_t strip = (detail::many_vector_registers ? 8 : 4) * lane;
     /// Numbers after the last that a register may read.
     static constexpr std::size_t padding = detail::lane_count<Real>;
 

@@ -6,6 +6,7 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/noise/brownian_bridge.hpp>
+#include <genrender/noise/noise_request.hpp>
 #include <genrender/noise/normal_lanes.hpp>
 
 #include <algorithm>
@@ -20,15 +21,6 @@
 #include <vector>
 
 namespace genrender {
-
-/// A part of a pixel that looks at the noise of one cell of space.
-template <std::size_t D>
-struct noise_request {
-    std::array<std::uint64_t, D> place{}; ///< fixed-point coordinates, see noise_tree::place_of
-    std::uint32_t level = 0;              ///< the cell's sides are 2^-level of the whole space
-    std::uint32_t pixel = 0;              ///< who looks
-    double share = 0;                     ///< of the pixel, in (0, 1]
-};
 
 /// White noise over the cube [-2^16, 2^16)^D as a tree of cells, each with a value of N(0, 1) a channel that its 2^D
 /// children divide among themselves by a Brownian bridge. Values follow from the seed and the way from the root, so
@@ -57,7 +49,8 @@ public:
 
     /// The level whose cells are at least `side` > 0 wide, and less than twice that, as far as there are levels.
     static std::uint32_t level_of(double side) {
-        auto const level = std::ilogb(2 * half_width / side);
+        // The exponent of a number that is never below 0, as std::ilogb has it.
+        auto const level = static_cast<int>(std::bit_cast<std::uint64_t>(2 * half_width / side) >> 52) - 1023;
         return static_cast<std::uint32_t>(std::clamp(level, 0, static_cast<int>(deepest)));
     }
 
@@ -135,8 +128,13 @@ private:
             return key_of(philox({static_cast<std::uint32_t>(child), 0, 1, 0}, node));
         }
 
-        /// The first level on which not all requests look at one cell, or one of them stops.
-        static std::uint32_t parting_level(std::span<noise_request<D> const> requests) {
+        /// Where requests part from each other.
+        struct parting {
+            std::uint32_t level; ///< the first on which they do not all look at one cell, or one of them stops
+            bool stops;          ///< whether one does
+        };
+
+        static parting parting_of(std::span<noise_request<D> const> requests) {
             std::uint64_t different = 0;
             auto lowest = deepest;
             for (auto const& request : requests) {
@@ -145,17 +143,21 @@ private:
                 }
                 lowest = std::min(lowest, request.level);
             }
-            return std::min(static_cast<std::uint32_t>(std::countl_zero(different)) - (64 - deepest), lowest);
+            auto const level = static_cast<std::uint32_t>(std::countl_zero(different)) - (64 - deepest);
+            return {std::min(level, lowest), lowest <= level};
         }
 
         /// All `requests` lie in the node, whose values are W [channels]; `free` is as many requests of room.
         void descend(std::span<noise_request<D>> requests, std::span<noise_request<D>> free, std::uint32_t level,
                      key node, double const* W) {
             auto const carried = looks_.size();
+            auto stops = true;
             if (carried == 0) {
                 // Nobody looks at what lies beside the way to where the requests part.
-                for (auto const last = parting_level(requests); level < last; ++level) {
-                    auto const child = child_of(requests[0], level);
+                auto const last = parting_of(requests);
+                stops = last.stops;
+                for (; level < last.level; ++level) {
+                    auto const child = detail::child_of(requests[0], deepest - 1 - level);
                     W = divide_among_children(node, level, W) + child * channels_;
                     node = child_key(node, child);
                 }
@@ -165,28 +167,20 @@ private:
                 }
             }
             // Those who look at the whole cell look at each of its children alike, if it has to be divided.
-            auto const is_deeper = [level](auto const& request) { return request.level > level; };
-            auto const here = std::partition(requests.begin(), requests.end(), is_deeper);
-            for (auto request = here; request != requests.end(); ++request) {
-                looks_.push_back({request->pixel, request->share});
+            if (stops) {
+                auto const is_deeper = [level](auto const& request) { return request.level > level; };
+                auto const here = std::partition(requests.begin(), requests.end(), is_deeper);
+                for (auto request = here; request != requests.end(); ++request) {
+                    looks_.push_back({request->pixel, request->share});
+                }
+                requests = requests.first(static_cast<std::size_t>(here - requests.begin()));
             }
-            requests = requests.first(static_cast<std::size_t>(here - requests.begin()));
             if (requests.empty()) {
                 divide(node, W);
                 looks_.resize(carried);
                 return;
             }
-            std::array<std::size_t, children + 1> ends{};
-            for (auto const& request : requests) {
-                ++ends[child_of(request, level) + 1];
-            }
-            for (std::size_t child = 0; child < children; ++child) {
-                ends[child + 1] += ends[child];
-            }
-            auto places = ends;
-            for (auto const& request : requests) {
-                free[places[child_of(request, level)]++] = request;
-            }
+            auto const ends = detail::sort_by_child(free, requests, deepest - 1 - level);
 
             auto const* const values = divide_among_children(node, level, W);
             for (auto& look : looks_) {
@@ -195,7 +189,11 @@ private:
             auto const looking = looks_.size();
             for (std::size_t child = 0; child < children; ++child) {
                 auto const count = ends[child + 1] - ends[child];
-                if (count > 0 || looking > 0) {
+                if (looking == 0 && count == 1 && free[ends[child]].level == level + 1) {
+                    // Many cells are seen by one pixel alone, which needs nothing more of them.
+                    auto const& only = free[ends[child]];
+                    add_share(only.pixel, only.share, values + child * channels_);
+                } else if (count > 0 || looking > 0) {
                     descend(free.subspan(ends[child], count), requests.subspan(ends[child], count), level + 1,
                             child_key(node, child), values + child * channels_);
                 }
@@ -211,14 +209,6 @@ private:
             for (std::size_t c = 0; c < channels_; ++c) {
                 sums_[pixel * channels_ + c] += weight * W[c];
             }
-        }
-
-        static std::size_t child_of(noise_request<D> const& request, std::uint32_t level) {
-            std::size_t child = 0;
-            for (std::size_t d = 0; d < D; ++d) {
-                child |= static_cast<std::size_t>(request.place[d] >> (deepest - 1 - level) & 1U) << d;
-            }
-            return child;
         }
 
         /// Divides a cell among the pixels that look at it.

@@ -8,11 +8,9 @@
 #include <genrender/pipeline/run_description.hpp>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <set>
 #include <vector>
 
@@ -23,11 +21,12 @@ struct planned_bytes {
     std::size_t maps = 0;           ///< UV or rest positions, object and coverage: the caller's, not in `peak`
     std::size_t latents = 0;        ///< z, clean estimates and what the sampler remembers
     std::size_t background = 0;     ///< mask of latent normalisation
-    std::size_t correspondence = 0; ///< compiled maps of all feature grids
+    std::size_t correspondence = 0; ///< which pixel or texel stands for each token, at all feature resolutions
 
     std::size_t bank = 0;             ///< K_KF, V_KF and F_KF of all places that take part
     std::size_t residuals = 0;        ///< what the denoiser reuses of keyframes
     std::size_t keyframe_latents = 0; ///< z_KF and its estimate
+    std::size_t matching = 0;         ///< what is kept to find tokens fast, see footprint_map_settings
     std::size_t blend_plans = 0;      ///< of the calls under way
     std::size_t network = 0;          ///< in the calls under way, queries, keys and values included
 
@@ -62,32 +61,30 @@ namespace detail {
 /// Elements that a vector has room for after `count` elements were appended one by one.
 inline std::size_t grown_capacity(std::size_t count) { return count == 0 ? 0 : std::bit_ceil(count); }
 
-/// Bytes of a footprint_map of D coordinates, about: per token a point, per kept pixel a sample and its share of the
-/// search structures.
+/// Bytes of what a footprint_map needs to find tokens, about.
+struct matching_bytes {
+    std::size_t kept = 0;   ///< samples of the frames that it was asked for last, matches with all that were keyframes
+    std::size_t making = 0; ///< for a moment, while a thread makes the samples of a frame
+};
+
 template <std::size_t D>
-std::size_t footprint_bytes(run_description const& run, grid_extents grid) {
-    struct sample { // as footprint_map keeps them
-        token_index token;
-        float purity;
-        std::array<float, D> place;
-        std::optional<surface_footprint<D>> footprint;
-        double density;
-    };
-    using point_type = std::optional<typename footprint_map<D>::point_type>;
-    constexpr std::size_t kept = 16;                                       // pixels a cell
-    constexpr std::size_t row = D > 2 ? 4 * (D + 9 + 1) : 4 * (D + 4 + 1); // of sample_grid, for a pixel
+matching_bytes matching_of(run_description const& run, footprint_map_settings const& settings, grid_extents grid,
+                           std::size_t keyframes, std::size_t ever_keyframes) {
     auto const cell = std::max<std::size_t>(1, run.map_grid.size() / std::max<std::size_t>(1, grid.size()));
-    auto const bytes_of = [&](std::size_t pixels) {
-        auto const n = pixels * std::min(kept, cell) / cell;
-        auto const nodes = (12 * n + 8191) / 8192 * 8208; // of sample_tree, in blocks
-        auto const bins = 3 * n + 64;                     // of sample_grid, 5 bytes each
-        return grown_capacity(n) * (sizeof(sample) + sizeof(sample::place)) + 4 * n + nodes + (n + 16) * row + 5 * bins;
-    };
-    auto bytes = run.frames * grid.size() * sizeof(point_type);
-    for (auto const pixels : run.surface_pixels) {
-        bytes += bytes_of(pixels);
+    auto pixels = run.surface_pixels;
+    if (pixels.empty()) {
+        pixels.assign(run.frames, run.map_grid.size());
     }
-    return run.surface_pixels.empty() ? bytes + run.frames * bytes_of(run.map_grid.size()) : bytes;
+    matching_bytes bytes;
+    for (auto const count : pixels) {
+        bytes.kept += kept_frame<D>::expected_bytes(count, cell);
+        bytes.making += kept_frame<D>::making_bytes(count, cell);
+    }
+    auto const kept_frames = std::min(std::max(settings.kept_frames, keyframes), ever_keyframes);
+    bytes.kept = bytes.kept / run.frames * kept_frames +
+                 kept_matches::expected_bytes(run.frames * ever_keyframes, grid.size(), settings.kept_bytes);
+    bytes.making /= run.frames;
+    return bytes;
 }
 
 /// Bytes of a texel_grid, at most: what tokens read, and per frame a bit for every texel that some token reads.
@@ -98,28 +95,15 @@ inline std::size_t texel_bytes(run_description const& run, grid_extents grid) {
            grown_capacity(grid.size()) * entry * run.frames;
 }
 
-template <class Real>
-std::size_t correspondence_bytes(run_description const& run, render_settings<Real> const& settings, grid_extents grid) {
-    if (settings.correspondence.kind == correspondence_kind::texel_grid) {
-        return texel_bytes(run, grid);
-    }
-    return run.map_dimensions == 3 ? footprint_bytes<3>(run, grid) : footprint_bytes<2>(run, grid);
-}
-
-/// Stacks of the latents' size that live while D is evaluated and between evaluations.
-struct latent_stacks {
-    std::size_t evaluating;
-    std::size_t stepping;
-};
-
-inline latent_stacks stacks_of(sampler method) {
+/// Stacks of the latents' size that live while D is evaluated; updates between evaluations add none.
+inline std::size_t latent_stacks(sampler method) {
     switch (method) {
     case sampler::heun:
-        return {4, 7};
+        return 4;
     case sampler::dpmpp_2m:
-        return {3, 5};
+        return 3;
     default:
-        return {2, 3};
+        return 2;
     }
 }
 
@@ -139,12 +123,14 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     std::size_t evaluations = 0;
     std::size_t with_keyframes = 0;
     std::size_t m = 0;
+    std::set<frame_index> ever_keyframes;
     for (std::size_t step = 0; step < settings.steps; ++step) {
         auto const of_step = settings.method == sampler::heun && step > 0 ? std::size_t{2} : std::size_t{1};
-        auto const drawn = method.keyframes(settings, run.frames, step).size();
+        auto const drawn = method.keyframes(settings, run.frames, step);
         evaluations += of_step;
-        with_keyframes += drawn > 0 ? of_step : 0;
-        m = std::max(m, drawn);
+        with_keyframes += drawn.empty() ? 0 : of_step;
+        m = std::max(m, drawn.size());
+        ever_keyframes.insert(drawn.begin(), drawn.end());
     }
     work.denoised_frames = evaluations * run.frames + with_keyframes * m;
 
@@ -187,11 +173,13 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
 
     // What grows with the frames.
     auto const latent_bytes = run.latent_channels * run.latent_grid.size() * sizeof(Real);
-    auto const stacks = detail::stacks_of(settings.method);
+    bytes.latents = detail::latent_stacks(settings.method) * run.frames * latent_bytes;
     bytes.maps = run.frames * run.map_grid.size() * (run.map_dimensions * sizeof(float) + 5);
     bytes.background = run.frames * run.latent_grid.size();
+    auto const by_texels = settings.correspondence.kind == correspondence_kind::texel_grid;
     for (auto const& grid : grids) {
-        bytes.correspondence += detail::correspondence_bytes(run, settings, grid);
+        bytes.correspondence +=
+            by_texels ? detail::texel_bytes(run, grid) : footprint_map<2>::expected_bytes(run.frames, grid.size());
     }
 
     // What does not: the keyframes' features and the calls under way.
@@ -200,25 +188,27 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     auto const at_once = std::min(calls * std::min(settings.frames_per_call, run.frames), run.frames);
     bytes.keyframe_latents = 2 * m * latent_bytes;
     bytes.residuals = settings.reuses_keyframes ? m * run.residual_bytes : 0;
+    std::size_t making = 0;
     for (auto const& grid : grids) {
-        auto const entries = detail::grown_capacity(grid.size() * m);
+        if (!by_texels) {
+            auto const matching_of = run.map_dimensions == 3 ? detail::matching_of<3> : detail::matching_of<2>;
+            auto const matching = matching_of(run, settings.correspondence.footprint, grid, m, ever_keyframes.size());
+            bytes.matching += matching.kept;
+            making = std::max(making, matching.making);
+        }
+        auto const entries = by_texels ? detail::grown_capacity(grid.size() * m) : grid.size() * m + 1;
         bytes.blend_plans +=
             at_once * ((grid.size() + 1) * sizeof(std::uint32_t) + entries * (sizeof(std::uint32_t) + sizeof(Real)));
     }
-    // Recorded features of the site that is running are in the bank and in the call; count them once.
-    auto const counted_twice =
-        settings.feature_storage == feature_storage::same ? 3 * m * largest_recorded * sizeof(Real) : 0;
+    // Recorded features of the site that is running are in the bank and not in the call.
+    auto const counted_twice = 3 * m * largest_recorded * sizeof(Real);
     auto const keyframe_call = run.call_bytes + m * of_frame - std::min(counted_twice, m * of_frame);
     auto const frames_call = calls * run.call_bytes + at_once * of_frame;
-    auto const recording = stacks.evaluating * run.frames * latent_bytes + bytes.keyframe_latents + keyframe_call;
-    auto const injecting = stacks.evaluating * run.frames * latent_bytes + bytes.blend_plans + frames_call;
-    auto const stepping = stacks.stepping * run.frames * latent_bytes;
-    auto const features = bytes.bank + bytes.residuals;
-    bytes.peak = bytes.background + bytes.correspondence +
-                 std::max(stepping, features + std::max(m > 0 ? recording : 0, injecting));
     bytes.network = std::max(keyframe_call, frames_call);
-    auto const is_stepping = stepping > features + std::max(m > 0 ? recording : 0, injecting);
-    bytes.latents = (is_stepping ? stacks.stepping : stacks.evaluating) * run.frames * latent_bytes;
+    auto const recording = m > 0 ? bytes.keyframe_latents + keyframe_call : 0;
+    auto const injecting = bytes.blend_plans + std::max(frames_call, calls * making);
+    bytes.peak = bytes.latents + bytes.background + bytes.correspondence + bytes.matching + bytes.bank +
+                 bytes.residuals + std::max(recording, injecting);
 
     work.noise_values = frames * static_cast<double>(run.latent_channels * run.latent_grid.size());
     if (settings.normalization.enabled) { // statistics read, values read and written

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// What is made of frames and costs too much memory to have of all: kept of those that were asked for last.
+#pragma once
+
+#include <genrender/core/index.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace genrender {
+
+/// Values that are made of single frames, at most `most` of them at a time besides those in use. May be used from several
+/// threads, which wait for each other only where they ask for the same frame.
+template <class Value>
+class recent_frames {
+public:
+    explicit recent_frames(std::size_t most) : most_(most) {}
+
+    /// The value of a frame, made by `make()` unless it is kept; then the one that was asked for longest ago goes. What
+    /// `make` throws goes to the caller, and the next one makes it anew.
+    template <class Make>
+    std::shared_ptr<Value const> of(frame_index frame, Make&& make) {
+        auto const place = place_of(frame);
+        std::lock_guard const lock(place->mutex);
+        if (!place->value) {
+            place->value = std::make_shared<Value const>(make());
+        }
+        return place->value;
+    }
+
+private:
+    struct place_type {
+        std::mutex mutex;
+        std::shared_ptr<Value const> value;
+    };
+    struct entry {
+        frame_index frame;
+        std::uint64_t asked; ///< when, counted in questions
+        std::shared_ptr<place_type> place;
+    };
+
+    std::shared_ptr<place_type> place_of(frame_index frame) {
+        std::lock_guard const lock(mutex_);
+        ++asked_;
+        auto const known =
+            std::find_if(entries_.begin(), entries_.end(), [&](entry const& e) { return e.frame == frame; });
+        if (known != entries_.end()) {
+            known->asked = asked_;
+            return known->place;
+        }
+        auto const place = std::make_shared<place_type>();
+        if (entries_.size() < most_) {
+            entries_.push_back({frame, asked_, place});
+        } else if (most_ > 0) {
+            *std::min_element(entries_.begin(), entries_.end(), [](entry const& a, entry const& b) {
+                return a.asked < b.asked;
+            }) = {frame, asked_, place};
+        }
+        return place;
+    }
+
+    std::size_t most_;
+    std::uint64_t asked_ = 0;
+    std::vector<entry> entries_;
+    std::mutex mutex_;
+};
+
+} // namespace genrender
