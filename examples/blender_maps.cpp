@@ -23,8 +23,9 @@ int main(int argc, char** argv) try {
     auto const guidance =
         rasterize(scenes::make_scene(argv[1], frames), {pixels, pixels}, threaded_loop(), position_pass::on);
 
-    // Channels ViewLayer.UV.U/V/A, ViewLayer.Depth.Z, ViewLayer.IndexOB.X and the rest position as ViewLayer.Rest.X/Y/Z,
-    // which Blender writes as an output variable of a shader, in 32 bits; v upwards, background at depth 1e10.
+    // Channels ViewLayer.UV.U/V/A, ViewLayer.Depth.Z, ViewLayer.IndexOB.X and the rest position as
+    // ViewLayer.Rest.X/Y/Z, which Blender writes as an output variable of a shader, in 32 bits; v upwards, background
+    // at depth 1e10.
     auto const files = examples::write_exr_maps(argv[2], guidance.uv, guidance.depth, {}, guidance.position);
     std::printf("%zu files, the first is %s\n", files.size(), files.front().c_str());
 } catch (std::exception const& error) {

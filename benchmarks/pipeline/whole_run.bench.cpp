@@ -189,10 +189,10 @@ std::optional<run_memory> memory_taken(MakeRun const& make_run, render_settings<
     });
 }
 
-/// Plans a run as the option --plan does, and runs it twice: with an allocator that returns what is freed to the system,
-/// so that what is resident is what the run holds, and with the system's, which keeps some of it at its own discretion
-/// (`resident`). The error is the plan's for what is held; growth is what each frame adds beyond those of the case with
-/// fewer, and `beyond_latents` what in it is no latents, over the latents that live at once.
+/// Plans a run as the option --plan does, and runs it twice: with an allocator that returns what is freed to the
+/// system, so that what is resident is what the run holds, and with the system's, which keeps some of it at its own
+/// discretion (`resident`). The error is the plan's for what is held; growth is what each frame adds beyond those of
+/// the case with fewer, and `beyond_latents` what in it is no latents, over the latents that live at once.
 template <class MakeRun>
 void measure_memory(benchmark::State& state, MakeRun const& make_run, render_settings<float> const& settings,
                     bytes_by_frames& by_frames) {

@@ -174,9 +174,9 @@ inline std::vector<measurement> read_measurements(std::filesystem::path const& f
 }
 
 /// The targets in a file: a list of {"says": <words>, "cases": <regular expression>, "measure": <counter,
-/// ratio_to_peer or ratio_to_case>, "at_least" or "at_most": <number>}. With "peer", a regular expression, a ratio is to
-/// such peers alone; a ratio_to_case is to "case", in which $1 is the first group of "cases". Throws file_error if it is
-/// no such file.
+/// ratio_to_peer or ratio_to_case>, "at_least" or "at_most": <number>}. With "peer", a regular expression, a ratio is
+/// to such peers alone; a ratio_to_case is to "case", in which $1 is the first group of "cases". Throws file_error if
+/// it is no such file.
 inline std::vector<target> read_targets(std::filesystem::path const& file) {
     std::vector<target> targets;
     for (auto const& entry : detail::array_of(file, detail::read_json(file), "targets")) {

@@ -27,11 +27,11 @@ double seconds_of(Body&& body) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Times `kernel` and `floor` in turn until Google Benchmark has enough, and reports the kernel's time, `share_of_floor`
-/// (the median over the floor's turns of its time for the kernel's whole work over the median time of the kernels until
-/// its next turn: 1 is as fast as the floor) and the floor's name as label. A floor that takes longer than the kernel
-/// takes its turn only now and then, so that it has half of the time and not all of it. The benchmark must be registered
-/// with UseManualTime().
+/// Times `kernel` and `floor` in turn until Google Benchmark has enough, and reports the kernel's time,
+/// `share_of_floor` (the median over the floor's turns of its time for the kernel's whole work over the median time of
+/// the kernels until its next turn: 1 is as fast as the floor) and the floor's name as label. A floor that takes longer
+/// than the kernel takes its turn only now and then, so that it has half of the time and not all of it. The benchmark
+/// must be registered with UseManualTime().
 template <class Kernel, class Floor>
 void time_against(benchmark::State& state, floor_of const& floor_is, Kernel&& kernel, Floor&& floor) {
     std::vector<double> ratios;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A painted, lit picture of one frame of a scene, drawn with the library's rasteriser: what the denoiser learns to make.
+// A painted, lit picture of one frame of a scene, drawn with the library's rasteriser: what the denoiser learns to
+// make.
 #pragma once
 
 #include "palette.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where UV, object, depth and rest position lie in an EXR file: Blender's render passes, or four plainly named channels.
+// Where UV, object, depth and rest position lie in an EXR file: Blender's render passes, or four plainly named
+// channels.
 #pragma once
 
 #include "exr_file.hpp"
@@ -77,8 +78,8 @@ inline std::map<std::string, std::size_t> blender_layers(exr_file const& file) {
     return layers;
 }
 
-/// Canonical positions: those of the rest pose, as a renderer's own output variable, or Blender's Position pass, which is
-/// where points are in the world and so canonical only for what stands still.
+/// Canonical positions: those of the rest pose, as a renderer's own output variable, or Blender's Position pass, which
+/// is where points are in the world and so canonical only for what stands still.
 inline std::vector<exr_channel> find_position(exr_file const& file, std::string const& layer, exr_layout layout) {
     using names = std::array<std::string, 3>;
     auto const prefix = layer.empty() ? layer : layer + ".";

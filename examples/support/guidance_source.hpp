@@ -100,7 +100,8 @@ guidance_source load_guidance(render_options const& options, Loop const& loop) {
     grid_extents const map{detail::map_pixels * options.size, detail::map_pixels * options.size};
     auto const positions = options.correspondence.coordinates() == canonical_coordinates::position ? position_pass::on
                                                                                                    : position_pass::off;
-    // Maps of 18 bytes a pixel, 30 with rest positions; a machine that has not as much would be brought down by its own kindness.
+    // Maps of 18 bytes a pixel, 30 with rest positions; a machine that has not as much would be brought down by its own
+    // kindness.
     auto const bytes = static_cast<double>(frames) * static_cast<double>(map.height) * static_cast<double>(map.width) *
                        (positions == position_pass::on ? 30 : 18);
     auto const memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

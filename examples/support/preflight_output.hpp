@@ -107,9 +107,9 @@ nlohmann::ordered_json preflight_json(preflight_report const& report, Advice con
     return result;
 }
 
-/// Looks at maps before a run and writes preflight.txt, preflight.json and preflight.png into `folder`. `advice` is what
-/// stands for a recommendation in text and JSON: its own sentence, or the program's. Throws file_error if a file cannot
-/// be written.
+/// Looks at maps before a run and writes preflight.txt, preflight.json and preflight.png into `folder`. `advice` is
+/// what stands for a recommendation in text and JSON: its own sentence, or the program's. Throws file_error if a file
+/// cannot be written.
 template <canonical_maps Maps, class Real, parallel_loop Loop, class Advice>
 preflight_report write_preflight(std::filesystem::path const& folder, Maps const& maps,
                                  std::vector<grid_extents> const& grids, render_settings<Real> const& settings,

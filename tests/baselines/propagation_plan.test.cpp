@@ -75,8 +75,8 @@ TEST_SUITE("baselines/propagation_plan") {
         std::vector<frame_index> const KF{{2}, {0}};
         check_plan<Real>(make_propagation_plan<Real>(map, KF, {1}), {0, 1, 3, 4}, {3 + 1, 3 + 2, 0, 1},
                          {1, Real(0.5), Real(0.5), 1}, 3);
-        // Frame 3 lies after both: its points 3, 4, 5 are the tokens 1, 2, - of frame 2; the last is taken from the same
-        // place on the screen.
+        // Frame 3 lies after both: its points 3, 4, 5 are the tokens 1, 2, - of frame 2; the last is taken from the
+        // same place on the screen.
         check_plan<Real>(make_propagation_plan<Real>(map, KF, {3}), {0, 1, 2, 3}, {1, 2, 2}, {1, 1, 1}, 2);
     }
     TEST_CASE_TEMPLATE("a keyframe takes its own tokens whoever else shows them", Real, float, double) {

@@ -28,7 +28,8 @@ TEST_SUITE("evaluation/sharpness") {
     }
 
     TEST_CASE_TEMPLATE("silhouettes are not steep", Real, float, double) {
-        // Each object is even, but they and the background differ: only pixels with both neighbours in the object count.
+        // Each object is even, but they and the background differ: only pixels with both neighbours in the object
+        // count.
         auto const maps = drawn_maps({"aabb aabb aa.."});
         pixel_objects const objects(to_uv_view(maps), {3, 4});
         stack<Real, 4> images({1, 1, 3, 4});

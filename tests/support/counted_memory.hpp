@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Counts the heap: how much lives, and the most that lived at once. Include it in one file of an executable: it
-// replaces malloc and what belongs to it, as the GNU C library allows, so that Eigen's and everybody's memory is counted.
+// replaces malloc and what belongs to it, as the GNU C library allows, so that Eigen's and everybody's memory is
+// counted.
 #pragma once
 
 #include <atomic>

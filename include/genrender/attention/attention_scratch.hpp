@@ -74,8 +74,8 @@ class key_tiles {
 public:
     static std::size_t scratch(std::size_t head_size) { return 2 * tile_keys * head_size; }
 
-    /// With `in_place`, rows of neighbouring numbers of type Real are read where they lie; else all are copied, which is
-    /// worth it when they are read several times: copies lie close together.
+    /// With `in_place`, rows of neighbouring numbers of type Real are read where they lie; else all are copied, which
+    /// is worth it when they are read several times: copies lie close together.
     key_tiles(std::span<key_value_view<Real> const> blocks, std::size_t head, std::size_t head_size,
               scratch_memory<Real>& memory, bool in_place)
         : blocks_(blocks), head_(head), in_place_(in_place), K_(memory.take(tile_keys * head_size)),
@@ -201,8 +201,8 @@ GENRENDER_ALWAYS_INLINE inline void for_each_row(strided_view<T, 2> const& view,
     }
 }
 
-/// Puts queries [count, head_size] into the columns of a tile, times `scale`, and empties it but for F; columns left over
-/// are 0.
+/// Puts queries [count, head_size] into the columns of a tile, times `scale`, and empties it but for F; columns left
+/// over are 0.
 template <class Real, std::size_t Registers>
 void read_queries(query_tile<Real, Registers> const& tile, strided_view<Real const, 2> const& Q, Real scale) {
     constexpr auto queries = query_tile<Real, Registers>::queries;

@@ -12,7 +12,8 @@
 
 // With Q^T, P^T and F^T, the maximum, the sum and the rescaling of a query's softmax are those of a lane: nothing is
 // ever reduced across a register. Both products multiply registers of Q^T and P^T by single numbers of K and V, so
-// neither K nor V is transposed. What a query gets depends on its keys alone, neither on its lane nor on its neighbours.
+// neither K nor V is transposed. What a query gets depends on its keys alone, neither on its lane nor on its
+// neighbours.
 
 namespace genrender::detail {
 
@@ -30,8 +31,8 @@ inline constexpr std::size_t tile_registers = many_vector_registers ? 4 : 2;
 /// at every new maximum).
 inline constexpr int headroom = 32;
 
-/// Keys and values of one head in tile_keys rows or fewer. Behind the last key, all rows repeat it and count 0 times, so
-/// that the last strip is full and has a next one.
+/// Keys and values of one head in tile_keys rows or fewer. Behind the last key, all rows repeat it and count 0 times,
+/// so that the last strip is full and has a next one.
 template <class Real>
 struct key_tile {
     std::array<Real const*, tile_keys + strip_rows> K; ///< [keys] rows of head_size numbers
@@ -167,8 +168,8 @@ void weigh_strip(query_tile<Real, Registers> const& tile, key_tile<Real> const& 
     });
 }
 
-/// Adds weights [keys, queries] times `Rows` columns of V to as many rows of F, or writes them if F is `fresh`. Sums of a
-/// tile of keys start from 0, so that rounding grows with the number of tiles and not with that of keys.
+/// Adds weights [keys, queries] times `Rows` columns of V to as many rows of F, or writes them if F is `fresh`. Sums of
+/// a tile of keys start from 0, so that rounding grows with the number of tiles and not with that of keys.
 template <std::size_t Rows, class Real, std::size_t Registers>
 void add_values(query_tile<Real, Registers> const& tile, key_tile<Real> const& keys, std::size_t channel,
                 Real const* weights, bool fresh) {

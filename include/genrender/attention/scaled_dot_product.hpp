@@ -45,7 +45,8 @@ void each_query_tile(Real* memory, std::size_t queries, std::size_t head_size, B
     }
 }
 
-/// Attention of some queries of one head, F and Q [queries, head_size]. Each key is read or copied once for all of them.
+/// Attention of some queries of one head, F and Q [queries, head_size]. Each key is read or copied once for all of
+/// them.
 template <class Real>
 void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::span<key_value_view<Real> const> blocks,
                  std::size_t head) {

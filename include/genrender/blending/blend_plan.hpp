@@ -48,9 +48,9 @@ enum class texel_average : std::uint8_t {
     by_quality ///< by how well they see it, where the correspondence says (graded_correspondence_map)
 };
 
-/// A correspondence_map that answers for all tokens of a frame at once: `map.matches(from, to)` holds, for each frame of
-/// `to`, what `map.token_at(to[k], *map.point_at(from, t))` and quality_at are for every token t, or is empty where there
-/// is more to say than that.
+/// A correspondence_map that answers for all tokens of a frame at once: `map.matches(from, to)` holds, for each frame
+/// of `to`, what `map.token_at(to[k], *map.point_at(from, t))` and quality_at are for every token t, or is empty where
+/// there is more to say than that.
 template <class Map>
 concept matched_correspondence_map = correspondence_map<Map> &&
     requires(Map const& map, frame_index i, std::span<frame_index const> to) {

@@ -28,8 +28,8 @@ constexpr Real first_fill_weight(std::size_t position) {
     return position == 0 ? Real{1} : Real{0};
 }
 
-/// Share in the unified texture: first_fill_share of the inpainted texture and the rest of the average texture, in which
-/// the keyframe has the share `average`; the paper's texture is the mean of both, first_fill_share = 1/2.
+/// Share in the unified texture: first_fill_share of the inpainted texture and the rest of the average texture, in
+/// which the keyframe has the share `average`; the paper's texture is the mean of both, first_fill_share = 1/2.
 template <class Real>
 constexpr Real unified_weight(std::size_t position, Real average, Real first_fill_share) {
     return first_fill_share * first_fill_weight<Real>(position) + (1 - first_fill_share) * average;

@@ -11,8 +11,8 @@
 
 namespace genrender {
 
-/// out[e] = formula(in[e]...) for `count` neighbouring elements; `formula` takes and gives numbers or registers of them,
-/// so it is made of +, -, * and /. `out` may be one of `in`.
+/// out[e] = formula(in[e]...) for `count` neighbouring elements; `formula` takes and gives numbers or registers of
+/// them, so it is made of +, -, * and /. `out` may be one of `in`.
 template <class Real, class Formula, class... In>
 void for_each_element(Real* out, std::size_t count, Formula const& formula, In const*... in) {
     std::size_t e = 0;

@@ -29,8 +29,8 @@ namespace genrender {
 /// questions get equal answers, from any thread. It does not require that the token that shows a point is the one it
 /// was asked from: where several tokens share a texel, one of them speaks for all.
 ///
-/// See also: footprint_map, without a texture; texel_grid, the paper's own; weighted_ and graded_correspondence_map, for
-/// models that know several tokens a point and how well it is seen; blend_plan, which is compiled from it.
+/// See also: footprint_map, without a texture; texel_grid, the paper's own; weighted_ and graded_correspondence_map,
+/// for models that know several tokens a point and how well it is seen; blend_plan, which is compiled from it.
 template <class Map>
 concept correspondence_map = std::copyable<typename Map::point_type> &&
     requires(Map const& map, frame_index i, token_index t, typename Map::point_type const& point) {
@@ -49,8 +49,8 @@ concept weighted_correspondence_map = correspondence_map<Map> &&
     map.visit_tokens(i, point, visit);
 };
 
-/// A correspondence_map that says how well a frame shows a point: `map.quality_at(frame, point)`, above 0 where token_at
-/// finds a token unless nothing is known of it, in units of which only ratios between frames matter.
+/// A correspondence_map that says how well a frame shows a point: `map.quality_at(frame, point)`, above 0 where
+/// token_at finds a token unless nothing is known of it, in units of which only ratios between frames matter.
 template <class Map>
 concept graded_correspondence_map = correspondence_map<Map> &&
     requires(Map const& map, frame_index i, typename Map::point_type const& point) {

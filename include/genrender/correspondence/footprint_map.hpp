@@ -37,11 +37,11 @@ struct footprint_map_settings {
 
 /// A model of correspondence_map over canonical coordinates of D dimensions, UVs or rest positions. Every cell of the
 /// feature map keeps up to 4 x 4 of the map's pixels for each object in it, with their footprints; a point is shown by
-/// the cell whose kept pixel lies closest to it on that frame's screen. Points of surfaces that face the other way, such
-/// as the second half of a mirrored texture or the back of a thin sheet, do not meet.
+/// the cell whose kept pixel lies closest to it on that frame's screen. Points of surfaces that face the other way,
+/// such as the second half of a mirrored texture or the back of a thin sheet, do not meet.
 ///
-/// Keeps a copy of the maps, which for views means that what they view must outlive it, and of each frame no more than a
-/// pixel a token: what finding tokens takes is made of a frame when it is asked for, and kept of the last few.
+/// Keeps a copy of the maps, which for views means that what they view must outlive it, and of each frame no more than
+/// a pixel a token: what finding tokens takes is made of a frame when it is asked for, and kept of the last few.
 template <std::size_t D>
 class footprint_map {
 public:

@@ -19,8 +19,8 @@
 
 namespace genrender {
 
-/// A frame's samples: of every cell of a feature map up to 4 x 4 of the map's pixels for each object in it, and the pixel
-/// that stands for the cell's token.
+/// A frame's samples: of every cell of a feature map up to 4 x 4 of the map's pixels for each object in it, and the
+/// pixel that stands for the cell's token.
 template <std::size_t D>
 class kept_frame {
     using sample = typename kept_samples<D>::sample;

@@ -27,8 +27,8 @@ struct footprint_point {
     std::optional<surface_footprint<D>> footprint; ///< none for a pixel without neighbours of its object
 };
 
-/// Kept pixels of one object in one frame. Of those nearest to a point in canonical space the one closest on the frame's
-/// screen shows it, if it is within reach; ties by lowest token.
+/// Kept pixels of one object in one frame. Of those nearest to a point in canonical space the one closest on the
+/// frame's screen shows it, if it is within reach; ties by lowest token.
 template <std::size_t D>
 class kept_samples {
 public:

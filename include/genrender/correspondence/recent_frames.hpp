@@ -14,8 +14,8 @@
 
 namespace genrender {
 
-/// Values that are made of single frames, at most `most` of them at a time besides those in use. May be used from several
-/// threads, which wait for each other only where they ask for the same frame.
+/// Values that are made of single frames, at most `most` of them at a time besides those in use. May be used from
+/// several threads, which wait for each other only where they ask for the same frame.
 template <class Value>
 class recent_frames {
 public:

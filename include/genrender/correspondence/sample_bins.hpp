@@ -28,7 +28,7 @@ public:
 
     sample_bins() = default;
 
-    /// Of one object's pixels in one frame, which it brings in order; `spacing` is how many of the map's lie between them.
+    /// Of one object's kept pixels in one frame, about `spacing` of the map's pixels apart; brings them in order.
     template <std::derived_from<grid_sample<D>> Sample>
     sample_bins(std::vector<Sample>& samples, double reach, double rows, double columns, double spacing)
         : reach_(static_cast<float>(reach)), half_rows_(static_cast<float>(rows / 2)),

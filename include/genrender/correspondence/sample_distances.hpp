@@ -19,8 +19,8 @@
 namespace genrender {
 
 /// The pixels of a block of bins around a point in single precision: squares of the distances in canonical space, and
-/// distances on the screen in half cells along the axis on which they are further; infinite where a pixel cannot show the
-/// point, below 0 where single precision does not tell.
+/// distances on the screen in half cells along the axis on which they are further; infinite where a pixel cannot show
+/// the point, below 0 where single precision does not tell.
 template <std::size_t D>
 class sample_distances {
     using pack = sample_pack<D>;
@@ -138,8 +138,8 @@ public:
         return detail::folded(closest, lesser);
     }
 
-    /// The one pixel within a radius that is at most so far on the screen, and the square of its canonical distance; none
-    /// if there are several or none.
+    /// The one pixel within a radius that is at most so far on the screen, and the square of its canonical distance;
+    /// none if there are several or none.
     std::optional<std::pair<std::uint32_t, float>> only_one_within(float radius, float distance) const {
         auto const far = floats{} + infinity();
         whole count{};

@@ -19,7 +19,8 @@ struct surface_footprint {
     std::array<float, D> across{}; ///< change of the canonical point from the pixel to the one on its right
     std::array<float, D> down{};   ///< change from the pixel to the one below
 
-    /// Area in squared canonical units: sqrt(|across|^2 |down|^2 - (across . down)^2), which is |det| in two dimensions.
+    /// Area in squared canonical units: sqrt(|across|^2 |down|^2 - (across . down)^2), which is |det| in two
+    /// dimensions.
     double area() const {
         auto const aa = dot(across, across);
         auto const dd = dot(down, down);
@@ -71,7 +72,8 @@ screen_offset offset_on(surface_footprint<D> const& footprint, std::array<float,
 /// normals meet at less than a right angle (D = 3). What is seen twice of one surface does.
 template <std::size_t D>
 bool faces_alike(surface_footprint<D> const& a, surface_footprint<D> const& b) {
-    // The product of the oriented areas, by Lagrange's identity: (a1 x a2) . (b1 x b2) = (a1.b1)(a2.b2) - (a1.b2)(a2.b1).
+    // The product of the oriented areas, by Lagrange's identity: (a1 x a2) . (b1 x b2) = (a1.b1)(a2.b2) -
+    // (a1.b2)(a2.b1).
     using of = surface_footprint<D>;
     return of::dot(a.across, b.across) * of::dot(a.down, b.down) -
                of::dot(a.across, b.down) * of::dot(a.down, b.across) >

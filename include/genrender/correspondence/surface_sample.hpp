@@ -23,8 +23,8 @@ struct surface_sample {
     pixel at;
 };
 
-/// The sample under a token's representative_pixel; none where that is none. Never an average of UVs, which would name a
-/// surface point that nobody sees.
+/// The sample under a token's representative_pixel; none where that is none. Never an average of UVs, which would name
+/// a surface point that nobody sees.
 inline std::optional<surface_sample> representative_sample(uv_maps_view const& maps, frame_index frame,
                                                            grid_extents grid, token_index token) {
     auto const p = representative_pixel(maps, frame, grid, token);

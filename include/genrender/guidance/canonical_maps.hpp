@@ -42,8 +42,8 @@ class canonical_maps_view {
 public:
     static constexpr std::size_t dimensions = D;
 
-    /// `points` [frames, height, width, D], texture coordinates or positions in the units of the rest pose; `object` and
-    /// `coverage` [frames, height, width]. Throws shape_error if the extents do not fit each other.
+    /// `points` [frames, height, width, D], texture coordinates or positions in the units of the rest pose; `object`
+    /// and `coverage` [frames, height, width]. Throws shape_error if the extents do not fit each other.
     canonical_maps_view(strided_view<float const, 4> points, strided_view<std::uint32_t const, 3> object,
                         strided_view<std::uint8_t const, 3> coverage)
         : points_(points), object_(object), coverage_(coverage) {

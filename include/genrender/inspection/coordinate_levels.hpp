@@ -63,9 +63,9 @@ inline std::optional<std::size_t> level_count(std::vector<double> const& values)
 
 } // namespace detail
 
-/// Looks at the finite `values` of a coordinate, which change by `slope` from pixel to pixel (typically, canonical units).
-/// `bends` are differences of successive steps from pixel to pixel, few of them across seams. Values are levels of [origin,
-/// origin + extent]: 0 and 1 for textures, the object's range for positions.
+/// Looks at the finite `values` of a coordinate, which change by `slope` from pixel to pixel (typically, canonical
+/// units). `bends` are differences of successive steps from pixel to pixel, few of them across seams. Values are levels
+/// of [origin, origin + extent]: 0 and 1 for textures, the object's range for positions.
 inline coordinate_levels levels_of(std::vector<float> values, std::vector<float> const& bends, double slope,
                                    double origin, double extent) {
     coordinate_levels result;

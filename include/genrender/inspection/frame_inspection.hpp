@@ -146,8 +146,8 @@ private:
     }
 };
 
-/// Looks at neighbours in frame i and searches for points shown twice. `frame` and `objects` are what is known of the frame
-/// and, of all frames, of the side of every object's pixels. Only what is counted here is filled in.
+/// Looks at neighbours in frame i and searches for points shown twice. `frame` and `objects` are what is known of the
+/// frame and, of all frames, of the side of every object's pixels. Only what is counted here is filled in.
 template <canonical_maps Maps>
 std::map<object_index, object_check> compare_pixels(Maps const& maps, frame_index i, map_check_settings const& settings,
                                                     frame_check const& frame,

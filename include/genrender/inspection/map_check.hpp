@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3] What maps tell of themselves before they are worked with: defects of every object, contents of every frame.
+// [GR sec. 3] What maps tell of themselves before they are worked with: defects of every object, contents of every
+// frame.
 #pragma once
 
 #include <genrender/core/parallel.hpp>

@@ -30,7 +30,8 @@ struct recommendation_thresholds {
 
 namespace detail {
 
-/// Calls `recommend(kind, figure, frames)` for what one object calls for; `token_pixels` are in a token of the finest grid.
+/// Calls `recommend(kind, figure, frames)` for what one object calls for; `token_pixels` are in a token of the finest
+/// grid.
 template <class Recommend>
 void recommend_on_object(object_check const& object, double token_pixels, recommendation_thresholds const& from,
                          Recommend const& recommend) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3] What can be wrong with one pixel of the maps: a seam beside it, a blend of two surfaces, a point shown twice.
+// [GR sec. 3] What can be wrong with one pixel of the maps: a seam beside it, a blend of two surfaces, a point shown
+// twice.
 #pragma once
 
 #include <genrender/correspondence/surface_footprint.hpp>
@@ -56,9 +57,9 @@ double distance_between(std::array<float, D> const& a, std::array<float, D> cons
 }
 
 /// Whether a seam runs between a covered pixel of finite coordinates and the next one along `step`: their points lie
-/// more than 8 `side` apart, the median side of the object's pixels in canonical units, and 4 times as far as the pixels
-/// before and behind, which tells a seam from a surface seen at a grazing angle. None without a next pixel of the same
-/// object.
+/// more than 8 `side` apart, the median side of the object's pixels in canonical units, and 4 times as far as the
+/// pixels before and behind, which tells a seam from a surface seen at a grazing angle. None without a next pixel of
+/// the same object.
 template <canonical_maps Maps>
 std::optional<bool> is_seam(Maps const& maps, frame_index i, pixel p, pixel_step step, double side) {
     auto const here = maps.point_at(i, p);
@@ -75,8 +76,8 @@ std::optional<bool> is_seam(Maps const& maps, frame_index i, pixel p, pixel_step
 
 /// Whether a covered pixel on the silhouette of its object holds a blend of what lies on both sides, as antialiasing
 /// makes it: its point is 8 times as far from where the second and third pixels inwards lead to as those are apart, and
-/// 4 `side` away. (The first may be blended too.) None for a pixel that is not on a silhouette or has no three pixels of
-/// the object behind it.
+/// 4 `side` away. (The first may be blended too.) None for a pixel that is not on a silhouette or has no three pixels
+/// of the object behind it.
 template <canonical_maps Maps>
 std::optional<bool> is_blended_edge(Maps const& maps, frame_index i, pixel p, double side) {
     auto const here = maps.point_at(i, p);

@@ -11,8 +11,8 @@
 
 namespace genrender {
 
-/// One pixel of each square of `stride` x `stride` pixels, the stride as small as a limit of pixels allows. Places within
-/// the squares follow a sequence of low discrepancy, so that lines of a map do not fall between them.
+/// One pixel of each square of `stride` x `stride` pixels, the stride as small as a limit of pixels allows. Places
+/// within the squares follow a sequence of low discrepancy, so that lines of a map do not fall between them.
 class pixel_lattice {
 public:
     /// At most `most` pixels of `grid`, all of them if they are no more; `most` counts as at least 1.

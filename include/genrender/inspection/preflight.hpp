@@ -148,8 +148,8 @@ inline void recommend_on_grids(preflight_report& report, correspondence_kind kin
 
 } // namespace detail
 
-/// Looks at maps as a run by `settings` at the feature `grids` would use them: hit rate, collisions, error and coverage by
-/// the correspondence that the settings choose and the keyframes that its steps draw, and what the maps tell of
+/// Looks at maps as a run by `settings` at the feature `grids` would use them: hit rate, collisions, error and coverage
+/// by the correspondence that the settings choose and the keyframes that its steps draw, and what the maps tell of
 /// themselves. What cannot be measured, for bad contents, settings or grids, is said in a recommendation; nothing of
 /// these throws. Does not depend on the threads of `loop` but for the seconds.
 template <canonical_maps Maps, class Real, parallel_loop Loop = sequential_loop>

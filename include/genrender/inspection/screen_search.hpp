@@ -30,9 +30,9 @@ struct screen_place {
     double offset = 0; ///< from the pixel's middle along the axis on which it is further, in pixels
 };
 
-/// Finds surface points in one frame: from the nearest of a lattice of pixels it walks along the footprints to the pixel
-/// whose own footprint holds the point. So the work and the memory of a search do not grow with the maps. Pixels whose
-/// coordinates are not finite are not seen. The maps must outlive it.
+/// Finds surface points in one frame: from the nearest of a lattice of pixels it walks along the footprints to the
+/// pixel whose own footprint holds the point. So the work and the memory of a search do not grow with the maps. Pixels
+/// whose coordinates are not finite are not seen. The maps must outlive it.
 template <canonical_maps Maps>
 class screen_search {
 public:

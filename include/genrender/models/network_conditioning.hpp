@@ -24,8 +24,9 @@ struct network_conditioning {
     Real conditioning_scale = 1; ///< factor of what the ControlNet adds; 0 is as if it were not there
 };
 
-/// The hint of a depth-conditioned ControlNet at image resolution [frames, channels, height, width]: inverse depth [frames, height, width]
-/// in [0, 1], nearest = 1, repeated over the channels. Throws value_error at an inverse depth that is not finite.
+/// The hint of a depth-conditioned ControlNet at image resolution [frames, channels, height, width]: inverse depth
+/// [frames, height, width] in [0, 1], nearest = 1, repeated over the channels. Throws value_error at an inverse depth
+/// that is not finite.
 template <class Real>
 stack<Real, 4> depth_hint(strided_view<float const, 3> inverse_depth, std::size_t channels = 3) {
     auto const [frames, height, width] = inverse_depth.extents();

@@ -23,8 +23,8 @@ inline constexpr std::array<std::string_view, 11> prompt_words{"plain",  "stripe
 
 namespace detail {
 
-/// Whether a byte belongs to a word of lower-case letters and digits. Bytes of other alphabets count as letters, so that
-/// an unknown word is named whole.
+/// Whether a byte belongs to a word of lower-case letters and digits. Bytes of other alphabets count as letters, so
+/// that an unknown word is named whole.
 inline bool is_prompt_letter(char letter) {
     return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || (letter & 0x80) != 0;
 }
@@ -73,7 +73,8 @@ std::vector<std::size_t> prompt_rows(std::string_view text, Words const& words =
 template <class Real>
 class prompt_vocabulary {
 public:
-    /// Takes `token_embedding.weight` [1 + words, channels]. Throws file_error if it is missing, misshapen or not alone.
+    /// Takes `token_embedding.weight` [1 + words, channels]. Throws file_error if it is missing, misshapen or not
+    /// alone.
     prompt_vocabulary(weights<Real>& source, std::size_t channels,
                       std::vector<std::string> words = {prompt_words.begin(), prompt_words.end()})
         : words_(std::move(words)), table_({words_.size() + 1, channels}) {

@@ -157,8 +157,8 @@ public:
     }
 
     /// Runs the processor as a call does, in each branch up to its last site and no further; a branch without one does
-    /// not run. If `lent` is not null it becomes what the decoder starts from, of the branches in which the processor is
-    /// plain before. Throws as a call does, shape_error unless `last` has one entry a branch.
+    /// not run. If `lent` is not null it becomes what the decoder starts from, of the branches in which the processor
+    /// is plain before. Throws as a call does, shape_error unless `last` has one entry a branch.
     template <class Processor>
     void run_until(strided_view<Real const, 4> z, Real sigma, std::span<frame_index const> frames, Processor& processor,
                    std::span<std::optional<site_index> const> last, residuals_type* lent = nullptr) const {

@@ -44,8 +44,8 @@ struct unet_config {
     std::size_t grid_divisor() const { return std::size_t{1} << (levels() - 1); }
 };
 
-/// Throws value_error unless a network can be built: at least one level, at most 16, one entry a level everywhere, no zero, groups
-/// that divide the channels they normalise, heads that divide theirs.
+/// Throws value_error unless a network can be built: at least one level, at most 16, one entry a level everywhere, no
+/// zero, groups that divide the channels they normalise, heads that divide theirs.
 inline void require_config(unet_config const& config) {
     auto const function = "unet_config";
     auto const one_a_level = "one entry for each of block_out_channels";

@@ -23,8 +23,8 @@ enum class background_noise : std::uint8_t {
 
 /// The directions in which the pixels of the maps look, which background_noise::environment needs.
 struct environment_rays {
-    /// A direction in world space, of any length above 0, for a place on the screen in pixels of the maps: (0, 0) is the
-    /// corner at the top left, rows come first.
+    /// A direction in world space, of any length above 0, for a place on the screen in pixels of the maps: (0, 0) is
+    /// the corner at the top left, rows come first.
     std::function<std::array<double, 3>(frame_index, double row, double column)> direction = {};
 
     /// A pixel's unit direction, and how it changes to the pixel on the right and the one below.

@@ -100,9 +100,9 @@ inline void require_noise_settings(noise_settings const& settings) {
 
 /// Writes noise of N(0, 1) into z [frames, channels, height, width]; `frames[i]` is the frame that entry i shows. Under
 /// noise_kind::uv, z = pi_UV(z_UV) by settings.reading. Each frame depends on its own maps alone, and with T = 0 under
-/// readings of texels on the T that all frames of the maps give its objects. Throws shape_error if `frames` does not count
-/// the entries of z, value_error if a frame is not in the maps, the latents do not divide them, a coordinate is not
-/// finite, or settings contradict each other or, with texels, the maps are not UV maps.
+/// readings of texels on the T that all frames of the maps give its objects. Throws shape_error if `frames` does not
+/// count the entries of z, value_error if a frame is not in the maps, the latents do not divide them, a coordinate is
+/// not finite, or settings contradict each other or, with texels, the maps are not UV maps.
 template <class Real, canonical_maps Maps, parallel_loop Loop = sequential_loop>
 void initial_noise(strided_view<Real, 4> z, Maps const& maps, std::span<frame_index const> frames,
                    noise_settings const& settings, Loop const& loop = {}) {

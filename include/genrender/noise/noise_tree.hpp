@@ -95,7 +95,8 @@ private:
         }
 
     private:
-        /// Draws values 4 * block ... of N(0, 1) of a node, `blocks` times four a channel: drawn_ [channels, 4 * blocks].
+        /// Draws values 4 * block ... of N(0, 1) of a node, `blocks` times four a channel: drawn_ [channels, 4 *
+        /// blocks].
         void draw(key const& node, std::size_t block, std::size_t blocks) {
             constexpr std::size_t at_once = 4;
             auto const count = channels_ * blocks;

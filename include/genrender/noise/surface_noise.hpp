@@ -87,8 +87,8 @@ void add_look(std::vector<noise_request<D>>& requests, std::array<float, D> cons
 
 } // namespace detail
 
-/// What the latent pixels of frame i look at, by the footprints of the maps' pixels. Throws value_error if the grid does
-/// not divide the maps or a coordinate is not finite or beyond noise_tree's range.
+/// What the latent pixels of frame i look at, by the footprints of the maps' pixels. Throws value_error if the grid
+/// does not divide the maps or a coordinate is not finite or beyond noise_tree's range.
 template <canonical_maps Maps>
 noise_looks<Maps::dimensions> look_at_noise(Maps const& maps, frame_index i, grid_extents grid,
                                             background_noise background, environment_rays const& rays) {
@@ -125,9 +125,9 @@ noise_looks<Maps::dimensions> look_at_noise(Maps const& maps, frame_index i, gri
 }
 
 /// Writes noise of N(0, 1) into z [channels, height, width] for frame i: white within the frame whatever the maps show,
-/// and between frames as correlated as the surfaces under two latent pixels overlap. Each frame depends on its own maps,
-/// the seed and the diffusion step alone, so a sampler that adds noise calls it again with another step. Throws as
-/// look_at_noise does.
+/// and between frames as correlated as the surfaces under two latent pixels overlap. Each frame depends on its own
+/// maps, the seed and the diffusion step alone, so a sampler that adds noise calls it again with another step. Throws
+/// as look_at_noise does.
 template <class Real, canonical_maps Maps>
 void surface_noise(strided_view<Real, 3> z, Maps const& maps, frame_index i, std::uint64_t seed,
                    background_noise background = background_noise::fixed, environment_rays const& rays = {},

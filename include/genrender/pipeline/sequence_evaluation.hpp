@@ -75,8 +75,8 @@ public:
         return {static_cast<std::size_t>(std::ranges::size(run_->phi->sites())), run_->phi->branches()};
     }
 
-    /// f_KF, F_KF <- Phi(z_KF, D_KF, c): denoises the frames KF as one stack, as far as the denoiser must run, and keeps
-    /// their features at the places that take part; with `extended` they attend to each other (eq. 3). Throws
+    /// f_KF, F_KF <- Phi(z_KF, D_KF, c): denoises the frames KF as one stack, as far as the denoiser must run, and
+    /// keeps their features at the places that take part; with `extended` they attend to each other (eq. 3). Throws
     /// value_error if the denoiser did not run the processor at one of these places, or cannot store features as the
     /// settings say.
     feature_bank<features_type> record_keyframes(std::vector<frame_index> const& KF, bool extended) const {

@@ -12,8 +12,8 @@ namespace genrender {
 
 namespace detail {
 
-/// z becomes z + (sigma_next - sigma) (d + d_next) / 2 with the slopes d = (z - x0) / sigma here and d_next = (z_euler -
-/// x0_next) / sigma_next there.
+/// z becomes z + (sigma_next - sigma) (d + d_next) / 2 with the slopes d = (z - x0) / sigma here and d_next = (z_euler
+/// - x0_next) / sigma_next there.
 template <class Latents, std::floating_point Real>
 void take_mean_step(Latents& z, Latents const& x0, Latents const& z_euler, Latents const& x0_next, Real sigma,
                     Real sigma_next) {
