@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.2] Compiling a frame's correspondence, and matching all tokens of one frame in another.
+// [GR sec. 3.2] Reading a frame's maps, making it ready to be searched, and matching all its tokens in another.
 #include <genrender/correspondence/footprint_map.hpp>
 
 #include <benchmark/benchmark.h>
@@ -21,7 +21,8 @@ turning_world const& world() {
     return known;
 }
 
-void compile(benchmark::State& state) {
+/// Which pixel stands for each token.
+void read_maps(benchmark::State& state) {
     auto const side = static_cast<std::size_t>(state.range(0));
     for (auto _ : state) {
         footprint_map const map(world().uv(), {side, side});
@@ -29,7 +30,23 @@ void compile(benchmark::State& state) {
     }
     state.SetItemsProcessed(state.iterations() * std::int64_t{frames});
 }
-BENCHMARK(compile)->ArgNames({"side"})->Arg(64)->Arg(16)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_maps)->ArgNames({"side"})->Arg(64)->Arg(16)->Unit(benchmark::kMillisecond);
+
+/// What a frame needs to be a keyframe.
+void keep_frame(benchmark::State& state) {
+    auto const side = static_cast<std::size_t>(state.range(0));
+    auto const maps = world().uv();
+    std::uint32_t turn = 0;
+    for (auto _ : state) {
+        frame_index const i{turn++ % frames};
+        kept_frame<2> const kept(maps, i, {side, side}, 1, [&](token_index token) {
+            return representative_pixel(maps, i, {side, side}, token);
+        });
+        benchmark::DoNotOptimize(kept.samples_of({0}));
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(keep_frame)->ArgNames({"side"})->Arg(64)->Arg(16)->Unit(benchmark::kMillisecond);
 
 /// Items are tokens that show an object.
 template <class Map>

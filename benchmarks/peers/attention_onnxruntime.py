@@ -34,10 +34,13 @@ def attention(heads, q, k, v):
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     session = onnxruntime.InferenceSession(model.SerializeToString(), options, providers=["CPUExecutionProvider"])
     binding = session.io_binding()
-    for name, values in (("Q", q), ("K", k), ("V", v)):
-        binding.bind_ortvalue_input(name, onnxruntime.OrtValue.ortvalue_from_numpy(values))
-    binding.bind_ortvalue_output("F", onnxruntime.OrtValue.ortvalue_from_numpy(numpy.zeros_like(q)))
-    return lambda: session.run_with_iobinding(binding)
+    # What is bound is the arrays' own memory: they live as long as what runs.
+    arrays = {"Q": q, "K": k, "V": v, "F": numpy.zeros_like(q)}
+    bound = {name: onnxruntime.OrtValue.ortvalue_from_numpy(values) for name, values in arrays.items()}
+    for name in ("Q", "K", "V"):
+        binding.bind_ortvalue_input(name, bound[name])
+    binding.bind_ortvalue_output("F", bound["F"])
+    return lambda kept=(arrays, bound): session.run_with_iobinding(binding)
 
 
 def main():

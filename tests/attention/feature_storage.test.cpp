@@ -61,6 +61,22 @@ TEST_SUITE("attention/feature_storage") {
             });
         }
     }
+    TEST_CASE("features of 16 bits stay as they are or go over to the other format") {
+        auto f = host_features<float>::allocate({1, 1, 2});
+        f.view()(0, 0, 0) = 1 + 0x1p-9F;
+        f.view()(0, 0, 1) = -3;
+        auto const half = stored_features(f, feature_storage::f16);
+        auto const value = [](host_features<float> const& of, std::size_t c) {
+            return of.visit([&](auto const& view) { return static_cast<float>(view(0, 0, c)); });
+        };
+        auto const same = stored_features(half, feature_storage::f16);
+        CHECK(same.storage() == feature_storage::f16);
+        CHECK(value(same, 0) == 1 + 0x1p-9F);
+        auto const other = stored_features(half, feature_storage::bf16);
+        CHECK(other.storage() == feature_storage::bf16);
+        CHECK(value(other, 0) == 1);
+        CHECK(value(other, 1) == -3);
+    }
     TEST_CASE("features that cannot be stored are refused") {
         CHECK(stored_features(5, feature_storage::same) == 5);
         CHECK_THROWS_WITH_AS(stored_features(5, feature_storage::bf16),

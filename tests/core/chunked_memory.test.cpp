@@ -33,6 +33,14 @@ TEST_SUITE("core/chunked_memory") {
         CHECK(memory.byte_count() == 2 * chunked_memory::chunk_bytes);
     }
 
+    TEST_CASE("a block of some size has a chunk of its own and the chunk before it goes on") {
+        chunked_memory memory;
+        auto* const first = static_cast<std::byte*>(memory.allocate(100, 4));
+        CHECK(memory.allocate(chunked_memory::chunk_bytes / 4, 64) != nullptr);
+        CHECK(memory.byte_count() == chunked_memory::chunk_bytes + chunked_memory::chunk_bytes / 4 + 64);
+        CHECK(static_cast<std::byte*>(memory.allocate(100, 4)) == first + 100);
+    }
+
     TEST_CASE("what is larger than a chunk has one of its own and what was freed stays") {
         chunked_memory memory;
         CHECK(memory.byte_count() == 0);

@@ -96,12 +96,8 @@ TEST_SUITE("core/vector_lanes") {
         CHECK(seen == std::array<std::size_t, 5>{0, 1, 2, 3, 4});
     }
 
-    TEST_CASE("asking for an address neither reads nor writes it") {
-        double x = 3;
-        detail::prefetch_to_read(&x);
-        detail::prefetch_to_write(&x);
-        detail::prefetch_to_read(nullptr);
-        detail::prefetch_to_write(nullptr);
-        CHECK(x == 3);
+    TEST_CASE("any address may be asked for") {
+        CHECK_NOTHROW(detail::prefetch_to_read(nullptr));
+        CHECK_NOTHROW(detail::prefetch_to_write(nullptr));
     }
 }

@@ -573,7 +573,27 @@ TEST_SUITE("correspondence/footprint_map") {
         CHECK(map.quality_at({2}, right) == 0);
     }
 
-    TEST_CASE("threads compile what one compiles") {
+    TEST_CASE("threads that make frames in turn find what one finds") {
+        auto const maps = testing::random_scene(6, 8, {64, 64}, 4);
+        footprint_map const one(to_uv_view(maps), {16, 16});
+        std::vector<frame_index> const KF{{5}, {0}, {7}};
+        for (std::size_t const kept : {0U, 1U, 8U}) {
+            footprint_map const many(to_uv_view(maps), {16, 16}, {.kept_bytes = 0, .kept_frames = kept});
+            std::vector<std::vector<std::shared_ptr<token_matches const>>> found(64);
+            threaded_loop(4)(64,
+                             [&](std::size_t n) { found[n] = many.matches({static_cast<std::uint32_t>(n % 8)}, KF); });
+            for (std::size_t n = 0; n < 64; ++n) {
+                auto const expected = one.matches({static_cast<std::uint32_t>(n % 8)}, KF);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    CHECK(found[n][k]->tokens == expected[k]->tokens);
+                    CHECK(found[n][k]->is_shown == expected[k]->is_shown);
+                    CHECK(found[n][k]->qualities == expected[k]->qualities);
+                }
+            }
+        }
+    }
+
+    TEST_CASE("threads read maps as one does") {
         auto const maps = testing::random_scene(5, 4, {64, 64}, 4);
         footprint_map const one(to_uv_view(maps), {16, 16});
         footprint_map const two(to_uv_view(maps), {16, 16}, footprint_map_settings{}, threaded_loop(2));

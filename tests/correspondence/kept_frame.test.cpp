@@ -108,6 +108,13 @@ TEST_SUITE("correspondence/kept_frame") {
         CHECK(own > 500);
     }
 
+    TEST_CASE("coordinates that are not finite are refused") {
+        auto maps = plane();
+        maps.uv(0, 5, 5, 1) = std::numeric_limits<float>::quiet_NaN();
+        CHECK_THROWS_WITH_AS(kept(to_uv_view(maps), {4, 4}),
+                             "kept_frame: maps is nan, expected finite canonical coordinates", value_error);
+    }
+
     TEST_CASE("a surface too small for numbers has the greatest quality and one without neighbours none") {
         auto maps = plane();
         for (auto& coordinate : maps.uv) {

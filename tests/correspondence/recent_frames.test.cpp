@@ -35,7 +35,21 @@ TEST_SUITE("correspondence/recent_frames") {
         CHECK(made == 4);
     }
 
-    TEST_CASE("a value in use stays when its place is taken, and without places there are values all the same") {
+    TEST_CASE("frames asked for in turn are found when there is room for them all") {
+        recent_frames<std::uint32_t> recent(0);
+        recent.keep_at_least(3);
+        recent.keep_at_least(2);
+        std::size_t made = 0;
+        for (std::uint32_t n = 0; n < 12; ++n) {
+            CHECK(*recent.of({n % 3}, [&] {
+                ++made;
+                return n % 3;
+            }) == n % 3);
+        }
+        CHECK(made == 3);
+    }
+
+    TEST_CASE("a value in use stays when its place is taken") {
         for (std::size_t const most : {0U, 1U}) {
             recent_frames<std::uint32_t> recent(most);
             auto const first = recent.of({1}, [] { return 7U; });

@@ -106,7 +106,13 @@ TEST_SUITE("pipeline/memory_plan") {
         settings.reuses_keyframes = false;
         CHECK(plan_memory(run, settings).bytes.residuals == 0);
         settings.method = sampler::heun;
-        CHECK(plan_memory(run, settings).bytes.latents > plan.bytes.latents);
+        CHECK(plan_memory(run, settings).bytes.latents == 2 * plan.bytes.latents);
+        // Two steps draw six keyframes or fewer; their matches with 20 frames fit into one chunk.
+        CHECK(plan.bytes.correspondence == footprint_map<2>::expected_bytes(20, 6));
+        CHECK(plan.bytes.matching > chunked_memory::chunk_bytes);
+        CHECK(plan.bytes.matching <= chunked_memory::chunk_bytes + 6 * kept_frame<2>::expected_bytes(384, 64));
+        settings.correspondence.kind = correspondence_kind::texel_grid;
+        CHECK(plan_memory(run, settings).bytes.matching == 0);
     }
     TEST_CASE("[GR eq. 3, 5] FLOPs of attention are counted by hand") {
         auto settings = two_steps();

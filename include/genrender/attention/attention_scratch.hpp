@@ -186,6 +186,9 @@ GENRENDER_ALWAYS_INLINE inline void for_each_row(strided_view<T, 2> const& view,
     auto const stride = view.stride(0);
     auto const first = std::min(begin, view.extent(0));
     auto const count = view.extent(0) - first;
+    if (count == 0) {
+        return;
+    }
     auto* const rows = view.data() + static_cast<std::ptrdiff_t>(first) * stride;
     auto const visit = [&](auto i)
                            GENRENDER_ALWAYS_INLINE { body(i, rows + static_cast<std::ptrdiff_t>(i()) * stride); };

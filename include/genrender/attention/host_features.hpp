@@ -44,10 +44,10 @@ public:
         host_features features;
         switch (storage) {
         case feature_storage::f16:
-            features.template own_rounded<float16>(from);
+            features.template own_converted<float16>(from);
             break;
         case feature_storage::bf16:
-            features.template own_rounded<bfloat16>(from);
+            features.template own_converted<bfloat16>(from);
             break;
         default:
             copy(features.template own<Real>(from.extents()), from);
@@ -75,12 +75,21 @@ public:
 
     friend strided_view<Real, 3> to_view(host_features const& features) { return features.view(); }
 
-    /// x kept in a format, as storable_features has it.
+    /// x kept in a format, as storable_features has it; of the other format of 16 bits by way of Real.
     friend host_features stored(host_features const& x, feature_storage storage) {
-        return storage == feature_storage::same ? x : rounded(x.view(), storage);
+        if (storage == feature_storage::same || storage == x.storage()) {
+            return x;
+        }
+        return x.storage() == feature_storage::same ? rounded(x.view(), storage) : rounded(x.widened().view(), storage);
     }
 
 private:
+    host_features widened() const {
+        host_features features;
+        visit([&](auto const& from) { features.template own_converted<Real>(from); });
+        return features;
+    }
+
     template <class T>
     strided_view<T, 3> own(std::array<std::size_t, 3> const& extents) {
         auto values = std::make_shared<std::vector<T>>(extents[0] * extents[1] * extents[2]);
@@ -90,8 +99,8 @@ private:
         return view;
     }
 
-    template <class T>
-    void own_rounded(strided_view<Real const, 3> from) {
+    template <class T, class From>
+    void own_converted(strided_view<From, 3> from) {
         auto const to = own<T>(from.extents());
         for (std::size_t i = 0; i < from.extent(0); ++i) {
             for (std::size_t t = 0; t < from.extent(1); ++t) {

@@ -56,7 +56,7 @@ void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::sp
     auto const tiles = (queries + full::queries - 1) / full::queries;
     scratch_memory<Real> memory(key_tiles<Real>::scratch(head_size) + (tile_keys + 1) * full::queries +
                                 tiles * full::size(head_size));
-    // A single tile of queries reads each key once.
+    // Few queries read each key once, or twice in narrow tiles.
     key_tiles<Real> keys(blocks, head, head_size, memory, tiles == 1);
     auto* const weights = memory.take((tile_keys + 1) * full::queries);
     auto* const tile_memory = memory.take(tiles * full::size(head_size));

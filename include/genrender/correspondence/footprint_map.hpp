@@ -31,7 +31,8 @@ struct footprint_map_settings {
     double reach = 1;
     /// Bytes of matches between frames that a map may keep for later steps.
     std::size_t kept_bytes = std::size_t{64} << 20;
-    /// Frames in which a map can find tokens without reading the maps again; keyframes of a step in the first place.
+    /// Frames in which a map can find tokens without reading the maps again; it keeps at least as many as it is asked
+    /// for matches with at once.
     std::size_t kept_frames = 8;
 };
 
@@ -40,8 +41,9 @@ struct footprint_map_settings {
 /// the cell whose kept pixel lies closest to it on that frame's screen. Points of surfaces that face the other way,
 /// such as the second half of a mirrored texture or the back of a thin sheet, do not meet.
 ///
-/// Keeps a copy of the maps, which for views means that what they view must outlive it, and of each frame no more than
-/// a pixel a token: what finding tokens takes is made of a frame when it is asked for, and kept of the last few.
+/// Keeps a copy of the maps, which for views means that what they view must outlive it and stay as it is, and of each
+/// frame no more than a pixel a token: what finding tokens takes is made of a frame when it is asked for, and kept of
+/// the last few.
 template <std::size_t D>
 class footprint_map {
 public:
@@ -62,7 +64,9 @@ public:
         source_ = source;
     }
 
+    /// Frames of the maps.
     std::size_t frame_count() const { return source_->frame_count(); }
+    /// Height and width of the feature map.
     grid_extents grid() const { return grid_; }
 
     /// The surface point under the token's representative pixel.
@@ -81,8 +85,8 @@ public:
     /// footprint_map_settings::kept_bytes.
     std::vector<std::shared_ptr<token_matches const>> matches(frame_index from, std::span<frame_index const> to) const {
         std::vector<std::shared_ptr<token_matches const>> result(to.size());
-        // Points are read once for all that are not kept. A thread's calls share their memory: between matches, which
-        // stay, it would leave holes.
+        recent_->keep_at_least(to.size());
+        // Points are read once for all that are not kept, and no call allocates them anew.
         thread_local std::vector<std::optional<point_type>> points;
         points.clear();
         for (std::size_t n = 0; n < to.size(); ++n) {
@@ -205,7 +209,7 @@ private:
             std::uint32_t number;
             std::uint32_t token;
         };
-        thread_local std::vector<finding> found; // as in matches()
+        thread_local std::vector<finding> found;
         found.clear();
         found.reserve(points.size());
         for (std::uint32_t t = 0; t < points.size(); ++t) {

@@ -2,6 +2,7 @@
 // What is kept of a frame's maps to tell which of its tokens show a surface point.
 #pragma once
 
+#include <genrender/core/error.hpp>
 #include <genrender/correspondence/kept_samples.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
@@ -15,6 +16,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace genrender {
@@ -26,10 +28,12 @@ class kept_frame {
     using sample = typename kept_samples<D>::sample;
 
 public:
+    /// Rows and columns of parts of a cell.
     static constexpr std::size_t samples_per_side = 4;
 
-    /// Reads frame i of maps for feature maps of `grid`, which divides them. `representative_of(token)` is the token's
-    /// representative_pixel.
+    /// Reads frame i of maps for feature maps of `grid`. `representative_of(token)` is the token's
+    /// representative_pixel. Throws value_error if the grid does not divide the maps or canonical coordinates are not
+    /// finite.
     template <canonical_maps Maps, class RepresentativeOf>
         requires(Maps::dimensions == D)
     kept_frame(Maps const& maps, frame_index i, grid_extents grid, double reach,
@@ -49,12 +53,13 @@ public:
 
     /// Bytes of a frame in which objects fill so many pixels of cells of that many, about.
     static constexpr std::size_t expected_bytes(std::size_t pixels, std::size_t cell) {
-        return kept_samples<D>::expected_bytes(pixels * std::min(samples_per_side * samples_per_side, cell) / cell);
+        return kept_samples<D>::expected_bytes(expected_samples(pixels, cell));
     }
 
-    /// Bytes that making such a frame takes for a moment, about: samples as they are found and in their order.
+    /// Bytes that making such a frame takes for a moment, about: samples as they are found, in vectors that are a third
+    /// empty, and once more in their order.
     static constexpr std::size_t making_bytes(std::size_t pixels, std::size_t cell) {
-        return 5 * sizeof(sample) / 2 * (pixels * std::min(samples_per_side * samples_per_side, cell) / cell);
+        return expected_samples(pixels, cell) * sizeof(sample) * 5 / 2;
     }
 
     /// The samples of an object; null if the frame does not show it.
@@ -64,6 +69,10 @@ public:
     }
 
 private:
+    static constexpr std::size_t expected_samples(std::size_t pixels, std::size_t cell) {
+        return pixels * std::min(samples_per_side * samples_per_side, cell) / cell;
+    }
+
     /// The pixels of one cell, by object: how many, and of each part of the cell the one nearest to the part's middle.
     template <class Maps>
     class cell_reader {
@@ -148,6 +157,10 @@ private:
         }
 
         sample sample_at(pixel p, token_index token, double purity) const {
+            for (auto const coordinate : maps_.point_at(i_, p)) {
+                require_value(std::isfinite(coordinate), "kept_frame", "maps", coordinate,
+                              "finite canonical coordinates");
+            }
             auto const footprint = footprint_at(maps_, i_, p);
             auto const quality = footprint ? purity / footprint->area() : 0;
             auto const most = double{std::numeric_limits<float>::max()};

@@ -45,8 +45,6 @@ public:
         speaker says;
     };
 
-    kept_samples() = default;
-
     /// Of pixels in a frame whose cells have `cell` pixels and keep samples `spacing` of them apart. A sample reaches
     /// `reach` half cells.
     kept_samples(std::vector<sample> samples, double reach, grid_extents cell, double spacing)

@@ -14,12 +14,19 @@
 
 namespace genrender {
 
-/// Values that are made of single frames, at most `most` of them at a time besides those in use. May be used from
-/// several threads, which wait for each other only where they ask for the same frame.
+/// Values that are made of single frames, kept of those that were asked for last. May be used from several threads,
+/// which wait long for each other only where they ask for the same frame.
 template <class Value>
 class recent_frames {
 public:
-    explicit recent_frames(std::size_t most) : most_(most) {}
+    /// Keeps at most so many, and one at least.
+    explicit recent_frames(std::size_t most) : most_(std::max<std::size_t>(most, 1)) {}
+
+    /// Makes room for so many, for one who asks for them in turn: with less room none would ever be found.
+    void keep_at_least(std::size_t most) {
+        std::lock_guard const lock(mutex_);
+        most_ = std::max(most_, most);
+    }
 
     /// The value of a frame, made by `make()` unless it is kept; then the one that was asked for longest ago goes. What
     /// `make` throws goes to the caller, and the next one makes it anew.
@@ -56,7 +63,7 @@ private:
         auto const place = std::make_shared<place_type>();
         if (entries_.size() < most_) {
             entries_.push_back({frame, asked_, place});
-        } else if (most_ > 0) {
+        } else {
             *std::min_element(entries_.begin(), entries_.end(), [](entry const& a, entry const& b) {
                 return a.asked < b.asked;
             }) = {frame, asked_, place};

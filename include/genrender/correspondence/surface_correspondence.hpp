@@ -43,8 +43,8 @@ public:
     /// A surface point of the map that was chosen; others are of no use to it.
     using point_type = std::variant<typename footprints::point_type, texel_grid::point_type>;
 
-    /// Of maps for feature maps of `grid`; what views view must outlive it. Throws as the chosen map does, value_error
-    /// for texels of maps that are not UV maps.
+    /// Of maps for feature maps of `grid`; what views view must outlive it and stay as it is. Throws as the chosen map
+    /// does, value_error for texels of maps that are not UV maps.
     template <canonical_maps Maps, parallel_loop Loop = sequential_loop>
         requires(Maps::dimensions == D)
     surface_correspondence(Maps const& maps, grid_extents grid, correspondence_settings const& settings,

@@ -24,9 +24,11 @@ namespace genrender {
 /// `maps.object_at(i, p)`    | object_index        | the object that a covered pixel shows
 /// `maps.point_at(i, p)`     | array<float, D>     | its canonical coordinates; equal ones are one surface point
 ///
+/// Maps can be copied, as cheaply as views: who finds correspondences in them keeps them.
+///
 /// Models: uv_maps_view, position_maps_view.
 template <class Maps>
-concept canonical_maps = requires(Maps const& maps, frame_index i, pixel p) {
+concept canonical_maps = std::copy_constructible<Maps> && requires(Maps const& maps, frame_index i, pixel p) {
     { maps.frame_count() } -> std::convertible_to<std::size_t>;
     { maps.grid() } -> std::convertible_to<grid_extents>;
     { maps.is_covered(i, p) } -> std::same_as<bool>;

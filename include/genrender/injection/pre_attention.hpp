@@ -5,6 +5,8 @@
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/core/error.hpp>
 
+#include <array>
+#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -16,12 +18,11 @@ namespace detail {
 /// Throws shape_error if features that tell their extents are of another number of frames.
 template <class Features>
 void require_frames(char const* function, char const* argument, Features const& x, std::size_t frames) {
-    if constexpr (requires { x.extents()[0]; }) {
-        if (x.extents()[0] != frames) {
-            auto expected = x.extents();
-            expected[0] = frames;
-            require_extents(function, argument, x.extents(), expected);
-        }
+    if constexpr (requires {
+                      { x.extents() } -> std::convertible_to<std::array<std::size_t, 3>>;
+                  }) {
+        std::array<std::size_t, 3> const extents = x.extents();
+        require_extents(function, argument, extents, std::array{frames, extents[1], extents[2]});
     }
 }
 

@@ -103,9 +103,11 @@ void check_grids(preflight_report& report, Maps const& maps, correspondence_sett
     for (std::size_t k = 0; k < drawn.size(); ++k) {
         searches.emplace(drawn[k], std::move(*made[k]));
     }
+    auto kept = settings; // Every frame looks for tokens in all of them, one after the other.
+    kept.footprint.kept_frames = std::max(kept.footprint.kept_frames, drawn.size());
     for (auto& check : report.grids) {
         try {
-            surface_correspondence<Maps::dimensions> const map(maps, check.grid, settings, loop);
+            surface_correspondence<Maps::dimensions> const map(maps, check.grid, kept, loop);
             check = check_grid(map, maps, report.maps.looked_at, report.keyframes, searches, tokens, loop);
         } catch (value_error const& refusal) {
             check.refusal = refusal.what();

@@ -181,7 +181,7 @@ private:
                 looks_.resize(carried);
                 return;
             }
-            auto const ends = detail::sort_by_child(free, requests, deepest - 1 - level);
+            auto const begins = detail::sort_by_child(free, requests, deepest - 1 - level);
 
             auto const* const values = divide_among_children(node, level, W);
             for (auto& look : looks_) {
@@ -189,13 +189,13 @@ private:
             }
             auto const looking = looks_.size();
             for (std::size_t child = 0; child < children; ++child) {
-                auto const count = ends[child + 1] - ends[child];
-                if (looking == 0 && count == 1 && free[ends[child]].level == level + 1) {
+                auto const count = begins[child + 1] - begins[child];
+                if (looking == 0 && count == 1 && free[begins[child]].level == level + 1) {
                     // Many cells are seen by one pixel alone, which needs nothing more of them.
-                    auto const& only = free[ends[child]];
+                    auto const& only = free[begins[child]];
                     add_share(only.pixel, only.share, values + child * channels_);
                 } else if (count > 0 || looking > 0) {
-                    descend(free.subspan(ends[child], count), requests.subspan(ends[child], count), level + 1,
+                    descend(free.subspan(begins[child], count), requests.subspan(begins[child], count), level + 1,
                             child_key(node, child), values + child * channels_);
                 }
             }

@@ -37,8 +37,8 @@ T const* neighbouring_values(strided_view<T const, 2> const& view, std::vector<T
     return room.data();
 }
 
-/// Writes all bits to `kept` where a pixel of the mask is not 0, and none where it is; adds the number of such pixels
-/// to `pixels`, which is 0, and returns the first of them.
+/// Writes all bits to `kept` where a pixel of the mask is not 0, and none where it is; counts such pixels in `pixels`,
+/// 0 before, and returns the first of them, `count` if there is none.
 template <class Bits>
 std::size_t keep_bits(Bits* kept, std::size_t& pixels, std::uint8_t const* mask, std::size_t count) {
     auto first = count;

@@ -16,7 +16,8 @@
 
 namespace genrender {
 
-/// Bytes that a run holds at its peak. Those of the first group grow with the number of frames, the others do not.
+/// Bytes that a run holds at its peak. Those of the first group grow with the number of frames, the others do not, but
+/// for `matching` up to its limit.
 struct planned_bytes {
     std::size_t maps = 0;           ///< UV or rest positions, object and coverage: the caller's, not in `peak`
     std::size_t latents = 0;        ///< z, clean estimates and what the sampler remembers
@@ -63,7 +64,8 @@ inline std::size_t grown_capacity(std::size_t count) { return count == 0 ? 0 : s
 
 /// Bytes of what a footprint_map needs to find tokens, about.
 struct matching_bytes {
-    std::size_t kept = 0;   ///< samples of the frames that it was asked for last, matches with all that were keyframes
+    std::size_t kept = 0;   ///< samples of the frames that it was asked for last, matches of all frames with all that
+                            ///< ever are keyframes
     std::size_t making = 0; ///< for a moment, while a thread makes the samples of a frame
 };
 
@@ -200,7 +202,8 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
         bytes.blend_plans +=
             at_once * ((grid.size() + 1) * sizeof(std::uint32_t) + entries * (sizeof(std::uint32_t) + sizeof(Real)));
     }
-    // Recorded features of the site that is running are in the bank and not in the call.
+    // Recorded features of the site that is running are counted in the bank. If they are copies of 16 bits, these are
+    // made after attention, when a call holds less by about as much.
     auto const counted_twice = 3 * m * largest_recorded * sizeof(Real);
     auto const keyframe_call = run.call_bytes + m * of_frame - std::min(counted_twice, m * of_frame);
     auto const frames_call = calls * run.call_bytes + at_once * of_frame;

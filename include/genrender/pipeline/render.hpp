@@ -7,7 +7,6 @@
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -146,13 +145,8 @@ template <denoiser Phi, canonical_maps Maps, parallel_loop Loop = sequential_loo
 latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
-    auto correspondence = settings.correspondence;
-    // All frames look for tokens in the keyframes of a step.
-    auto const& keyframes = settings.keyframes;
-    auto& kept_frames = correspondence.footprint.kept_frames;
-    kept_frames = std::max({kept_frames, keyframes.count, keyframes.frames.size()});
     auto const make_map = [&](grid_extents grid) {
-        return surface_correspondence<Maps::dimensions>(UV, grid, correspondence, loop);
+        return surface_correspondence<Maps::dimensions>(UV, grid, settings.correspondence, loop);
     };
     return render(method, phi, UV, make_map, settings, report, std::move(observer), loop);
 }
