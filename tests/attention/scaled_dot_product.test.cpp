@@ -4,7 +4,10 @@
 
 #include <doctest/doctest.h>
 
+#include "support/counted_memory.hpp"
 #include "support/random_stack.hpp"
+
+#include <genrender/core/parallel.hpp>
 
 #include <algorithm>
 #include <array>
@@ -448,6 +451,26 @@ TEST_SUITE("attention/scaled_dot_product") {
         scaled_dot_product(F.view(), odd, blocks, 1);
         CHECK(F(1, 0) == doctest::Approx(0.5));
         CHECK(F(0, 0) == doctest::Approx(std::exp(1.0) / (std::exp(1.0) + 1)));
+    }
+
+    TEST_CASE("it holds less than 8 MB beside its arguments however many the tokens and blocks") {
+        using genrender::testing::counted_memory;
+        if (!counted_memory::is_counted) {
+            MESSAGE("the heap is not counted here");
+            return;
+        }
+        threaded_loop const two(2);
+        two(2, [](std::size_t) {}); // Its threads are no scratch.
+        for (std::size_t const head_size : {40U, 160U}) {
+            auto const Q = random_stack<float, 2>({4096, head_size}, 1);
+            auto const K = random_stack<float, 2>({16, head_size}, 2);
+            stack<float, 2> F({4096, head_size});
+            blocks_of<float> const blocks(9, key_value_view<float>{K, K});
+            auto const bytes = counted_memory::peak_of([&] { scaled_dot_product(F.view(), Q, blocks, 1, two); });
+            MESSAGE("head size ", head_size, ": ", bytes, " bytes");
+            CHECK(bytes > 0);
+            CHECK(bytes < std::size_t{8} << 20);
+        }
     }
 
     TEST_CASE("no query is no work") {
