@@ -14,7 +14,6 @@
 #include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -176,10 +175,7 @@ private:
             for (std::uint32_t row = 0; row < maps_.grid().height; ++row) {
                 for (std::uint32_t column = 0; column < maps_.grid().width; ++column) {
                     if (maps_.is_covered(i, {row, column})) {
-                        for (auto const coordinate : maps_.point_at(i, {row, column})) {
-                            require_value(std::isfinite(coordinate), "footprint_map", "maps", coordinate,
-                                          "finite canonical coordinates");
-                        }
+                        detail::require_finite_point("footprint_map", maps_.point_at(i, {row, column}));
                     }
                 }
             }

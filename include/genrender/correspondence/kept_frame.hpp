@@ -21,6 +21,18 @@
 
 namespace genrender {
 
+namespace detail {
+
+/// Throws value_error of `function` unless the canonical coordinates of a point are finite.
+template <std::size_t D>
+void require_finite_point(char const* function, std::array<float, D> const& point) {
+    for (auto const coordinate : point) {
+        require_value(std::isfinite(coordinate), function, "maps", coordinate, "finite canonical coordinates");
+    }
+}
+
+} // namespace detail
+
 /// A frame's samples: of every cell of a feature map up to 4 x 4 of the map's pixels for each object in it, and the
 /// pixel that stands for the cell's token.
 template <std::size_t D>
@@ -157,14 +169,12 @@ private:
         }
 
         sample sample_at(pixel p, token_index token, double purity) const {
-            for (auto const coordinate : maps_.point_at(i_, p)) {
-                require_value(std::isfinite(coordinate), "kept_frame", "maps", coordinate,
-                              "finite canonical coordinates");
-            }
+            auto const place = maps_.point_at(i_, p);
+            detail::require_finite_point("kept_frame", place);
             auto const footprint = footprint_at(maps_, i_, p);
             auto const quality = footprint ? purity / footprint->area() : 0;
             auto const most = double{std::numeric_limits<float>::max()};
-            return {{maps_.point_at(i_, p), footprint}, {token, static_cast<float>(std::min(quality, most))}};
+            return {{place, footprint}, {token, static_cast<float>(std::min(quality, most))}};
         }
 
         Maps const& maps_;

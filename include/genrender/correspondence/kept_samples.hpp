@@ -120,7 +120,7 @@ private:
         return std::max(std::abs(offset.down) / height_, std::abs(offset.right) / width_) * 2;
     }
 
-    /// Made when it is asked for first: most frames have no need of it.
+    /// Made for the first point that the grid is not sure of.
     sample_tree<D> const& tree() const {
         std::call_once(is_tree_made_, [this] {
             std::vector<std::array<float, D>> places;
