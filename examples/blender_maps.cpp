@@ -3,7 +3,7 @@
 #include "scenes/scenes.hpp"
 #include "support/exr_maps_writer.hpp"
 
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 
 #include <cstdio>
 #include <exception>

@@ -2,8 +2,8 @@
 // [GR alg. 1] The shortest whole program: a scene, a denoiser, consistent latents.
 #include "scenes/camera_rotation.hpp"
 
-#include <genrender/guidance/rasterizer.hpp>
-#include <genrender/models/reference_network.hpp>
+#include <genrender/scene/rasterizer.hpp>
+#include <genrender/reference/reference_network.hpp>
 
 #include <exception>
 

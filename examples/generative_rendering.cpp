@@ -11,8 +11,8 @@
 
 #include <genrender/baselines/pix2video.hpp>
 #include <genrender/baselines/tokenflow.hpp>
-#include <genrender/models/reference_network.hpp>
-#include <genrender/models/reference_weights.hpp>
+#include <genrender/reference/reference_network.hpp>
+#include <genrender/reference/reference_weights.hpp>
 #include <genrender/pipeline/render.hpp>
 
 #include <algorithm>
@@ -23,6 +23,8 @@
 #include <vector>
 
 using namespace genrender;
+
+using namespace genrender::reference;
 using namespace genrender::examples;
 
 namespace {

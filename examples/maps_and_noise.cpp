@@ -6,7 +6,7 @@
 
 #include <genrender/correspondence/footprint_map.hpp>
 #include <genrender/correspondence/reproject.hpp>
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 #include <genrender/noise/initial_noise.hpp>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Your own correspondence in place of the library's: points of a rolling ball in its rest pose, without any texture.
 #include <genrender/guidance/uv_maps.hpp>
-#include <genrender/models/reference_network.hpp>
+#include <genrender/reference/reference_network.hpp>
 #include <genrender/pipeline/render.hpp>
 
 #include <glm/ext/matrix_transform.hpp>
@@ -18,6 +18,8 @@
 #include <numbers>
 
 using namespace genrender;
+
+using namespace genrender::reference;
 
 // The scene in a formula: a ball that rolls over the picture [-1, 1]^2 and turns to the viewer, who looks along -z.
 struct rolling_ball {

@@ -5,7 +5,7 @@
 
 #include <genrender/attention/scaled_dot_product.hpp>
 #include <genrender/baselines/per_frame.hpp>
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/injection/post_attention.hpp>
 #include <genrender/pipeline/render.hpp>

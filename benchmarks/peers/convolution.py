@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Times PyTorch's convolution on the shapes of benchmarks/models/conv2d.bench.cpp.
+"""Times PyTorch's convolution on the shapes of benchmarks/reference/conv2d.bench.cpp.
 
 Needs PyTorch. The channels of a pixel lie side by side, as ours do, which is no slower for PyTorch than planes.
 """

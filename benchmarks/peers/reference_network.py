@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Times PyTorch eager on the networks of benchmarks/models/reference_network.bench.cpp.
+"""Times PyTorch eager on the networks of benchmarks/reference/reference_network.bench.cpp.
 
 Needs PyTorch and diffusers, and the weights that the benchmark left in the folder GENRENDER_NETWORK_FOLDER: both run
 the same.

@@ -5,7 +5,7 @@
 
 #include <genrender/guidance/uv_maps.hpp>
 #include <genrender/injection/injector.hpp>
-#include <genrender/models/reference_network.hpp>
+#include <genrender/reference/reference_network.hpp>
 
 #include "benchmarks/support/paired_timing.hpp"
 
@@ -21,6 +21,8 @@
 #include <vector>
 
 using namespace genrender;
+
+using namespace genrender::reference;
 using benchmarks::floor_of;
 using benchmarks::time_against;
 

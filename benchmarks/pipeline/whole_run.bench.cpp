@@ -5,9 +5,9 @@
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/guidance/depth_maps.hpp>
-#include <genrender/guidance/rasterizer.hpp>
-#include <genrender/models/reference_network.hpp>
-#include <genrender/models/reference_weights.hpp>
+#include <genrender/scene/rasterizer.hpp>
+#include <genrender/reference/reference_network.hpp>
+#include <genrender/reference/reference_weights.hpp>
 
 #include <benchmarks/support/costless_denoiser.hpp>
 #include <benchmarks/support/median.hpp>
@@ -33,6 +33,8 @@
 #include <vector>
 
 using namespace genrender;
+
+using namespace genrender::reference;
 using namespace genrender::benchmarks;
 
 namespace {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <genrender/core/index.hpp>
-#include <genrender/models/unet_config.hpp>
-#include <genrender/models/unet_encoder.hpp>
+#include <genrender/reference/unet_config.hpp>
+#include <genrender/reference/unet_encoder.hpp>
 
 #include <cstddef>
 

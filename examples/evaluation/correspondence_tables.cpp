@@ -11,7 +11,7 @@
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/surface_correspondence.hpp>
 #include <genrender/evaluation/pixel_correspondence.hpp>
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 #include <genrender/noise/initial_noise.hpp>
 
 #include <CLI/CLI.hpp>

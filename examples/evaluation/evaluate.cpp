@@ -14,8 +14,8 @@
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/evaluation/time_slice.hpp>
-#include <genrender/models/reference_embedder.hpp>
-#include <genrender/models/reference_network.hpp>
+#include <genrender/reference/reference_embedder.hpp>
+#include <genrender/reference/reference_network.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -34,6 +34,8 @@
 #include <vector>
 
 using namespace genrender;
+
+using namespace genrender::reference;
 using namespace genrender::examples;
 
 namespace {

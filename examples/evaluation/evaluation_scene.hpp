@@ -14,7 +14,7 @@
 #include <genrender/core/tensor.hpp>
 #include <genrender/evaluation/pixel_correspondence.hpp>
 #include <genrender/guidance/depth_maps.hpp>
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
 
 #include <glm/common.hpp>

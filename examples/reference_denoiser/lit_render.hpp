@@ -12,8 +12,8 @@
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/guidance/depth_maps.hpp>
-#include <genrender/guidance/frame_rasterizer.hpp>
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/frame_rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 #include <genrender/scene/animation.hpp>
 #include <genrender/scene/camera.hpp>
 

@@ -7,7 +7,7 @@
 #include "model_file.hpp"
 #include "render_options.hpp"
 
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 #include <genrender/guidance/uv_convention.hpp>
 #include <genrender/guidance/uv_report.hpp>
 #include <genrender/noise/background_noise.hpp>

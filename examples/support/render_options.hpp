@@ -7,7 +7,7 @@
 
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
-#include <genrender/models/prompt_vocabulary.hpp>
+#include <genrender/reference/prompt_vocabulary.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 
 #include <CLI/CLI.hpp>

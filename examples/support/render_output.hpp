@@ -8,7 +8,7 @@
 #include "output_file.hpp"
 #include "pictures.hpp"
 
-#include <genrender/models/haar.hpp>
+#include <genrender/reference/haar.hpp>
 
 #include <algorithm>
 #include <array>

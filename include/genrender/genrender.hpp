@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Everything, in the order the data flows; without the reference network (models) and the bridges to engines
-// (adapters).
+// The core, in the order the data flows. The components have umbrellas of their own: genrender/scene.hpp, inspection.hpp,
+// evaluation.hpp and reference.hpp.
 #pragma once
 
 #include <genrender/core/chunked_memory.hpp>
@@ -18,21 +18,10 @@
 #include <genrender/core/tensor.hpp>
 #include <genrender/core/vector_lanes.hpp>
 
-#include <genrender/scene/animation.hpp>
-#include <genrender/scene/bounds.hpp>
-#include <genrender/scene/camera.hpp>
-#include <genrender/scene/mesh.hpp>
-#include <genrender/scene/primitives.hpp>
-#include <genrender/scene/skinning.hpp>
-#include <genrender/scene/triangle_coverage.hpp>
-#include <genrender/scene/uv_overlap.hpp>
-
 #include <genrender/guidance/background_mask.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 #include <genrender/guidance/depth_maps.hpp>
-#include <genrender/guidance/frame_rasterizer.hpp>
-#include <genrender/guidance/rasterizer.hpp>
 #include <genrender/guidance/uv_convention.hpp>
 #include <genrender/guidance/uv_maps.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
@@ -129,32 +118,3 @@
 #include <genrender/baselines/propagation_plan.hpp>
 #include <genrender/baselines/token_propagation.hpp>
 #include <genrender/baselines/tokenflow.hpp>
-
-#include <genrender/inspection/coordinate_levels.hpp>
-#include <genrender/inspection/finite_maps.hpp>
-#include <genrender/inspection/frame_inspection.hpp>
-#include <genrender/inspection/grid_check.hpp>
-#include <genrender/inspection/map_check.hpp>
-#include <genrender/inspection/map_recommendations.hpp>
-#include <genrender/inspection/object_check.hpp>
-#include <genrender/inspection/pixel_check.hpp>
-#include <genrender/inspection/pixel_lattice.hpp>
-#include <genrender/inspection/preflight.hpp>
-#include <genrender/inspection/preflight_text.hpp>
-#include <genrender/inspection/recommendation.hpp>
-#include <genrender/inspection/screen_search.hpp>
-#include <genrender/inspection/texture_tiles.hpp>
-
-#include <genrender/evaluation/contrast.hpp>
-#include <genrender/evaluation/correspondence_error.hpp>
-#include <genrender/evaluation/embeddings.hpp>
-#include <genrender/evaluation/flicker.hpp>
-#include <genrender/evaluation/frame_consistency.hpp>
-#include <genrender/evaluation/image_text_embedder.hpp>
-#include <genrender/evaluation/mean_and_error.hpp>
-#include <genrender/evaluation/pixel_correspondence.hpp>
-#include <genrender/evaluation/pixel_objects.hpp>
-#include <genrender/evaluation/prompt_fidelity.hpp>
-#include <genrender/evaluation/recognition.hpp>
-#include <genrender/evaluation/sharpness.hpp>
-#include <genrender/evaluation/time_slice.hpp>

@@ -8,7 +8,7 @@
 #include "small_baseline_run.hpp"
 
 #include <genrender/baselines/baseline_settings.hpp>
-#include <genrender/models/reference_network.hpp>
+#include <genrender/reference/reference_network.hpp>
 
 #include <doctest/doctest.h>
 
@@ -18,6 +18,8 @@
 #include <vector>
 
 using namespace genrender;
+
+using namespace genrender::reference;
 using namespace genrender::testing;
 
 namespace {

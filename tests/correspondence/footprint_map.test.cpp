@@ -9,7 +9,7 @@
 #include <genrender/core/stack.hpp>
 #include <genrender/correspondence/reproject.hpp>
 #include <genrender/evaluation/pixel_correspondence.hpp>
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 #include <genrender/scene/animation.hpp>
 #include <genrender/scene/primitives.hpp>
 

@@ -2,7 +2,7 @@
 // Every built-in scene fills the picture, leaves some sky, and gives any frame at any time.
 #include <examples/scenes/scenes.hpp>
 
-#include <genrender/guidance/rasterizer.hpp>
+#include <genrender/scene/rasterizer.hpp>
 #include <genrender/guidance/uv_report.hpp>
 #include <genrender/scene/uv_overlap.hpp>
 

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The reference network, read from diffusers' folders or seeded: the component genrender::reference.
+#pragma once
+
+#include <genrender/reference/activation.hpp>
+#include <genrender/reference/attention_matrices.hpp>
+#include <genrender/reference/checked_json.hpp>
+#include <genrender/reference/config_file.hpp>
+#include <genrender/reference/controlnet.hpp>
+#include <genrender/reference/conv2d.hpp>
+#include <genrender/reference/diffusers_config.hpp>
+#include <genrender/reference/diffusers_folder.hpp>
+#include <genrender/reference/embedded_hints.hpp>
+#include <genrender/reference/encoded_frames.hpp>
+#include <genrender/reference/feature_maps.hpp>
+#include <genrender/reference/feature_memory.hpp>
+#include <genrender/reference/feed_forward.hpp>
+#include <genrender/reference/forward_pass.hpp>
+#include <genrender/reference/group_norm.hpp>
+#include <genrender/reference/haar.hpp>
+#include <genrender/reference/half_precision.hpp>
+#include <genrender/reference/layer_norm.hpp>
+#include <genrender/reference/linear.hpp>
+#include <genrender/reference/network_conditioning.hpp>
+#include <genrender/reference/padded_map.hpp>
+#include <genrender/reference/prompt_vocabulary.hpp>
+#include <genrender/reference/reference_embedder.hpp>
+#include <genrender/reference/reference_network.hpp>
+#include <genrender/reference/reference_weights.hpp>
+#include <genrender/reference/resampler.hpp>
+#include <genrender/reference/resnet_block.hpp>
+#include <genrender/reference/safetensors.hpp>
+#include <genrender/reference/seeded_tensor.hpp>
+#include <genrender/reference/site_list.hpp>
+#include <genrender/reference/spatial_transformer.hpp>
+#include <genrender/reference/time_embedding.hpp>
+#include <genrender/reference/transformer_block.hpp>
+#include <genrender/reference/unet.hpp>
+#include <genrender/reference/unet_config.hpp>
+#include <genrender/reference/unet_encoder.hpp>
+#include <genrender/reference/weight_panels.hpp>
+#include <genrender/reference/weights.hpp>

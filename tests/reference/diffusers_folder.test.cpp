@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// Tests of folders in diffusers' layout.
+#include <genrender/reference/diffusers_folder.hpp>
+
+#include "golden.hpp"
+#include "golden_network.hpp"
+#include "small_networks.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+using namespace genrender;
+
+using namespace genrender::reference;
+using namespace genrender::testing;
+
+namespace {
+
+/// A folder to write into.
+struct test_folder {
+    temporary_file file{"folder"};
+    std::filesystem::path path = file.path();
+
+    test_folder() { std::filesystem::create_directories(path / "text_encoder"); }
+
+    void write(std::string const& name, std::string const& text) const { std::ofstream(path / name) << text; }
+    void touch(std::string const& name) const { write(name, ""); }
+
+    /// A vocabulary of two words, or what is told instead.
+    void write_vocabulary(std::string const& json, std::vector<std::size_t> const& shape = {3, 2}) const {
+        write("text_encoder/config.json", json);
+        std::vector<float> const values{0, 1, 2, 3, 4, 5};
+        write_safetensors((path / "text_encoder" / "model.safetensors").string(),
+                          {{"token_embedding.weight", {shape, values}}});
+    }
+    std::string config_text(std::string const& sentence) const {
+        return (path / "text_encoder" / "config.json").string() + ": " + sentence;
+    }
+};
+
+} // namespace
+
+TEST_SUITE("reference/diffusers_folder") {
+    TEST_CASE("weights are found whole or in shards and in full precision before half") {
+        test_folder const folder;
+        auto const names = [&] {
+            std::vector<std::string> found;
+            for (auto const& path : safetensors_paths(folder.path, "model")) {
+                found.push_back(std::filesystem::path(path).filename().string());
+            }
+            return found;
+        };
+        CHECK_THROWS_WITH_AS(names(),
+                             (folder.path.string() + ": there is no model.safetensors, expected one, or its .fp16, or "
+                                                     "an index of shards")
+                                 .c_str(),
+                             file_error);
+        folder.write("model.safetensors.index.fp16.json", R"({"weight_map": {"a": "h1", "b": "h2", "c": "h1"}})");
+        CHECK(names() == std::vector<std::string>{"h1", "h2"});
+        folder.touch("model.fp16.safetensors");
+        CHECK(names() == std::vector<std::string>{"model.fp16.safetensors"});
+        folder.write("model.safetensors.index.json",
+                     R"({"metadata": {"total_size": 9}, "weight_map": {"a": "m-1", "b": "m-2"}})");
+        CHECK(names() == std::vector<std::string>{"m-1", "m-2"});
+        folder.touch("model.safetensors");
+        CHECK(names() == std::vector<std::string>{"model.safetensors"});
+    }
+
+    TEST_CASE("an index that is none or points elsewhere is refused") {
+        for (auto const* map : {"null", "{}", "[\"a\"]", R"({"a": 1})", R"({"a": "../b"})", R"({"a": "/etc/b"})",
+                                R"({"a": ".."})", R"({"a": ""})", R"({"a": "c:b"})", R"({"a": "d\\b"})"}) {
+            test_folder const folder;
+            folder.write("model.safetensors.index.json", std::string(R"({"weight_map": )") + map + "}");
+            CAPTURE(map);
+            CHECK_THROWS_AS(safetensors_paths(folder.path, "model"), file_error);
+        }
+    }
+
+    TEST_CASE("shards are loaded as one network") {
+        test_folder const folder;
+        auto const& golden = golden_cases[2];
+        auto const config = golden_configs()[2];
+        write_golden_folder(folder.path, golden, config);
+        // Divide the UNet in two.
+        auto const unet_folder = folder.path / "unet";
+        auto const whole = unet_folder / "diffusion_pytorch_model.safetensors";
+        safetensors_file const file(whole.string());
+        std::array<std::map<std::string, std::vector<float>>, 2> values;
+        std::array<std::map<std::string, safetensors_source>, 2> shards;
+        std::string map;
+        std::size_t i = 0;
+        for (auto const& [name, entry] : file.entries()) {
+            auto const shard = i++ % 2;
+            auto const& kept = values[shard][name] = file.read<float>(name);
+            shards[shard][name] = {entry.shape, kept};
+            map += (map.empty() ? "\"" : ", \"") + name + "\": \"shard-" + std::to_string(shard) + "\"";
+        }
+        write_safetensors((unet_folder / "shard-0").string(), shards[0]);
+        write_safetensors((unet_folder / "shard-1").string(), shards[1]);
+        std::filesystem::remove(whole);
+        std::ofstream(unet_folder / "diffusion_pytorch_model.safetensors.index.json")
+            << R"({"weight_map": {)" << map << "}}";
+        diffusers_folder const files(folder.path);
+        auto source = files.unet<float>();
+        site_list sites({8, 8});
+        CHECK_NOTHROW(unet<float>(files.config(), source, sites));
+    }
+
+    TEST_CASE_TEMPLATE("the words of a folder replace the default ones", Real, float, double) {
+        test_folder const folder;
+        folder.write_vocabulary(R"({"_class_name": "PromptVocabulary", "words": ["gold", "silk"], "hidden_size": 2})");
+        auto const vocabulary = diffusers_folder(folder.path).template vocabulary<Real>(2);
+        REQUIRE(vocabulary);
+        CHECK(vocabulary->words() == std::vector<std::string>{"gold", "silk"});
+        CHECK((*vocabulary)("Silk")(1, 1) == 5);
+    }
+
+    TEST_CASE("another text encoder is left to the caller") {
+        test_folder const folder;
+        diffusers_folder const files(folder.path);
+        CHECK(!files.vocabulary<float>(2));
+        folder.write("text_encoder/config.json", R"({"architectures": ["CLIPTextModel"], "hidden_size": 768})");
+        CHECK(!files.vocabulary<float>(2));
+    }
+
+    TEST_CASE("a vocabulary that cannot be is refused") {
+        auto const check = [](std::string const& rest, std::string const& sentence) {
+            test_folder const folder;
+            folder.write_vocabulary(R"({"_class_name": "PromptVocabulary", )" + rest + "}");
+            CHECK_THROWS_WITH_AS(diffusers_folder(folder.path).vocabulary<float>(2),
+                                 folder.config_text(sentence).c_str(), file_error);
+        };
+        auto const words = std::string("words of lower-case letters and digits, each once");
+        check(R"("words": ["a", "b"], "hidden_size": 3)",
+              "option hidden_size is 3, expected 2, the UNet's cross_attention_dim");
+        check(R"("words": ["a", "B"], "hidden_size": 2)", "option words is [\"a\",\"B\"], expected " + words);
+        check(R"("words": ["a b"], "hidden_size": 2)", "option words is [\"a b\"], expected " + words);
+        check(R"("words": ["a", "a"], "hidden_size": 2)", "option words is [\"a\",\"a\"], expected " + words);
+        check(R"("words": [""], "hidden_size": 2)", "option words is [\"\"], expected " + words);
+        check(R"("hidden_size": 2)", "option words is absent, expected at least one");
+        check(R"("words": ["a", "b"], "hidden_size": 2, "layers": 12)", "1 options are unknown: layers, expected none");
+        test_folder const folder;
+        folder.write_vocabulary(R"({"_class_name": "PromptVocabulary", "words": ["a", "b"], "hidden_size": 2})",
+                                {2, 3});
+        CHECK_THROWS_WITH_AS(diffusers_folder(folder.path).vocabulary<float>(2),
+                             ((folder.path / "text_encoder" / "model.safetensors").string() +
+                              ": tensor token_embedding.weight is [2, 3], expected [3, 2]")
+                                 .c_str(),
+                             file_error);
+    }
+
+    TEST_CASE("an architecture that the weights do not have is told by a tensor's name") {
+        test_folder const folder;
+        auto const& golden = golden_cases[2];
+        write_golden_folder(folder.path, golden, golden_configs()[2]);
+        // As wide as can be written: no memory is asked for before the shapes agree.
+        auto json = nlohmann::json::parse(golden.unet_json);
+        json["block_out_channels"] = {1000000, 1000000, 1000000};
+        json["attention_head_dim"] = 1;
+        json["norm_num_groups"] = 1;
+        folder.write("unet/config.json", json.dump());
+        auto control = nlohmann::json::parse(golden.controlnet_json);
+        control.update(nlohmann::json{
+            {"block_out_channels", json["block_out_channels"]}, {"attention_head_dim", 1}, {"norm_num_groups", 1}});
+        folder.write("controlnet/config.json", control.dump());
+        diffusers_folder const files(folder.path);
+        auto source = files.unet<float>();
+        site_list sites({8, 8});
+        CHECK_THROWS_WITH_AS(unet<float>(files.config(), source, sites),
+                             ((folder.path / "unet" / "diffusion_pytorch_model.safetensors").string() +
+                              ": tensor conv_in.weight is [8, 4, 3, 3], expected [1000000, 4, 3, 3]")
+                                 .c_str(),
+                             file_error);
+    }
+}

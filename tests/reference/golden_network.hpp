@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// The weights and inputs of golden.hpp, made here as make_golden.py makes them.
+#pragma once
+
+#include "golden_case.hpp"
+#include "small_networks.hpp"
+
+#include <genrender/core/stack.hpp>
+#include <genrender/reference/controlnet.hpp>
+#include <genrender/reference/diffusers_config.hpp>
+#include <genrender/reference/safetensors.hpp>
+#include <genrender/reference/unet.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace genrender::testing {
+
+/// Numbers in [-1, 1): the scrambled sum (Steele et al. 2014, splitmix64) of a hash of the name and the index.
+inline std::vector<float> golden_values(std::string const& name, std::size_t count) {
+    std::uint64_t begin = 0xCBF29CE484222325U;
+    for (auto const letter : name) {
+        begin = (begin ^ static_cast<unsigned char>(letter)) * 0x100000001B3U;
+    }
+    std::vector<float> values(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        auto x = begin + i * 0x9E3779B97F4A7C15U;
+        x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
+        x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
+        x ^= x >> 31;
+        values[i] = static_cast<float>(x >> 40) * 0x1p-23f - 1;
+    }
+    return values;
+}
+
+template <class Real, std::size_t Rank>
+stack<Real, Rank> golden_stack(std::string const& name, std::array<std::size_t, Rank> const& extents) {
+    stack<Real, Rank> result(extents);
+    auto const values = golden_values(name, result.size());
+    std::copy(values.begin(), values.end(), result.data());
+    return result;
+}
+
+/// Writes `folder`/config.json and, beside it, every tensor that the network takes.
+template <class Network>
+void write_golden_model(std::filesystem::path const& folder, unet_config const& config, char const* json,
+                        std::string const& prefix) {
+    auto shapes = weights<float>::seeded(1, "");
+    site_list sites({8, 8});
+    Network const network(config, shapes, sites);
+    std::map<std::string, std::vector<float>> values;
+    std::map<std::string, safetensors_source> sources;
+    for (auto const& [name, shape] : shapes.taken()) {
+        std::size_t count = 1;
+        for (auto const extent : shape) {
+            count *= extent;
+        }
+        auto& x = values[name] = golden_values(prefix + name, count);
+        auto const fan_in = static_cast<double>(count / shape[0]);
+        auto const scale = static_cast<float>(std::exp2(std::floor(std::log2(std::sqrt(3 / fan_in)))));
+        for (auto& value : x) {
+            value = shape.size() > 1 ? scale * value : 0.25f * value + (name.ends_with("weight") ? 1.0f : 0.0f);
+        }
+        sources[name] = {shape, x};
+    }
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "config.json") << json;
+    write_safetensors((folder / "diffusion_pytorch_model.safetensors").string(), sources);
+}
+
+/// Writes the networks of a case in diffusers' layout; `config` must be the one that its texts describe.
+inline void write_golden_folder(std::filesystem::path const& folder, golden_case const& golden,
+                                unet_config const& config) {
+    auto const name = std::string(golden.name);
+    write_golden_model<unet<float>>(folder / "unet", config, golden.unet_json, name + ".unet.");
+    write_golden_model<controlnet<float>>(folder / "controlnet", config, golden.controlnet_json, name + ".controlnet.");
+    std::filesystem::create_directories(folder / "scheduler");
+    std::ofstream(folder / "scheduler" / "scheduler_config.json") << scheduler_json(config);
+}
+
+/// The configuration of each case as it is written in C++, in the order of golden_cases.
+inline std::array<unet_config, 3> golden_configs() {
+    unet_config small_sd15;
+    small_sd15.in_channels = small_sd15.out_channels = 4;
+    small_sd15.block_out_channels = {16, 24, 32, 32};
+    small_sd15.level_has_attention = {true, true, true, false};
+    small_sd15.layers_per_block = 2;
+    small_sd15.attention_head_dim = {8, 8, 8, 8};
+    small_sd15.cross_attention_dim = 20;
+    small_sd15.norm_num_groups = 8;
+    small_sd15.conditioning_channels = 3;
+    small_sd15.conditioning_embedding_out_channels = {4, 6, 8, 12};
+    small_sd15.prediction_type = prediction::epsilon;
+
+    unet_config small_sd2;
+    small_sd2.in_channels = small_sd2.out_channels = 4;
+    small_sd2.block_out_channels = {8, 12, 16};
+    small_sd2.level_has_attention = {true, true, false};
+    small_sd2.layers_per_block = 2;
+    small_sd2.attention_head_dim = {2, 3, 4};
+    small_sd2.transformer_layers_per_block = 2;
+    small_sd2.use_linear_projection = true;
+    small_sd2.cross_attention_dim = 6;
+    small_sd2.norm_num_groups = 4;
+    small_sd2.conditioning_channels = 3;
+    small_sd2.conditioning_embedding_out_channels = {4, 6};
+    return {unet_config{}, small_sd15, small_sd2};
+}
+
+} // namespace genrender::testing

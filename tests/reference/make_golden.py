@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Writes golden.hpp: what the public package diffusers computes for the networks of the tests.
+
+Needs Python 3.10 or later with PyTorch (any recent version, CPU only) and diffusers 0.42.1:
+
+    pip install torch numpy diffusers==0.42.1
+    python3 tests/reference/make_golden.py
+
+The tests compile the constants and never run Python. Weights and inputs are the numbers of golden_network.hpp:
+scrambled addresses, which need no random number generator on either side. Each network runs twice: in single precision
+as diffusers is, and in double precision with the sinusoids of time in double too, which diffusers always makes in
+single.
+"""
+
+import math
+import pathlib
+
+import diffusers
+import numpy
+import torch
+from diffusers import ControlNetModel, UNet2DConditionModel
+
+KEPT = 96  # elements of an output
+
+
+def values(name, count):
+    """Numbers in [-1, 1): the scrambled sum (splitmix64) of a hash of the name and the index."""
+    begin = 0xCBF29CE484222325
+    for byte in name.encode():
+        begin = ((begin ^ byte) * 0x100000001B3) % 2**64
+    x = numpy.uint64(begin) + numpy.arange(count, dtype=numpy.uint64) * numpy.uint64(0x9E3779B97F4A7C15)
+    x = (x ^ (x >> numpy.uint64(30))) * numpy.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> numpy.uint64(27))) * numpy.uint64(0x94D049BB133111EB)
+    x ^= x >> numpy.uint64(31)
+    return (x >> numpy.uint64(40)).astype(numpy.float64) * 2.0**-23 - 1
+
+
+def tensor(name, *shape):
+    return torch.from_numpy(values(name, math.prod(shape))).reshape(shape)
+
+
+def fill(model, prefix):
+    for name, parameter in model.named_parameters():
+        x = tensor(prefix + name, *parameter.shape)
+        if parameter.dim() == 1:
+            x = 0.25 * x + (1 if name.endswith("weight") else 0)
+        else:
+            # A power of two, so that the product is exact in float too.
+            x = x * 2.0 ** math.floor(math.log2(math.sqrt(3 / parameter[0].numel())))
+        parameter.copy_(x)
+
+
+class DoubleTimesteps(torch.nn.Module):
+    """diffusers' Timesteps with flip_sin_to_cos and downscale_freq_shift = 0, in double precision."""
+
+    def __init__(self, channels):
+        super().__init__()
+        half = channels // 2
+        self.frequencies = torch.exp(-math.log(10000) * torch.arange(half, dtype=torch.float64) / half)
+
+    def forward(self, timesteps):
+        phase = timesteps.double()[:, None] * self.frequencies
+        return torch.cat([phase.cos(), phase.sin()], dim=-1)
+
+
+def outputs(unet, control, z, t, prompt, hint, scale):
+    """The UNet alone and with the ControlNet."""
+    alone = unet(z, t, prompt).sample
+    down, middle = control(z, t, prompt, hint, conditioning_scale=scale, return_dict=False)
+    return alone, unet(z, t, prompt, down_block_additional_residuals=down, mid_block_additional_residual=middle).sample
+
+
+def numbers(x):
+    step = (x.numel() - 1) // KEPT | 1  # odd, so that rows are not met at one column
+    texts = [repr(value) for value in x.double().flatten()[::step][:KEPT].tolist()]
+    return "{" + ",\n    ".join(", ".join(texts[i : i + 5]) for i in range(0, len(texts), 5)) + "}"
+
+
+def case(name, *, grid, tokens, t, scale, embedding, out_channels, unet=None, control=None, **shared):
+    """The source text of one golden_case."""
+    conditioning = {"conditioning_embedding_out_channels": embedding, **(control or {})}
+    ups = [kind.replace("Down", "Up") for kind in reversed(shared["down_block_types"])]
+    unet = UNet2DConditionModel(out_channels=out_channels, up_block_types=ups, **shared, **(unet or {})).eval()
+    control = ControlNetModel(**shared, **conditioning).eval()
+    with torch.no_grad():
+        for model, prefix in (unet, name + ".unet."), (control, name + ".controlnet."):
+            fill(model, prefix)
+        factor = 2 ** (len(embedding) - 1)
+        inputs = (
+            tensor(name + ".z", 1, shared["in_channels"], *grid), t,
+            tensor(name + ".prompt", 1, tokens, shared["cross_attention_dim"]),
+            tensor(name + ".hint", 1, control.config.conditioning_channels, *(factor * extent for extent in grid)),
+            scale)
+        single = outputs(unet, control, *(x.float() if torch.is_tensor(x) else x for x in inputs))
+        for model in unet.double(), control.double():
+            model.time_proj = DoubleTimesteps(shared["block_out_channels"][0])
+        double = outputs(unet, control, *inputs)
+    fields = [f'"{name}"', f"{{{grid[0]}, {grid[1]}}}", str(tokens), repr(t), repr(scale)]
+    fields += [f'R"({model.to_json_string().strip()})"' for model in (unet, control)]
+    for one, two in zip(single, double):
+        fields.append(f"{{{(two.numel() - 1) // KEPT | 1}, {float(two.max() - two.min())!r},\n    {numbers(one)},\n    {numbers(two)}}}")
+    return "{" + ",\n    ".join(fields) + "}"
+
+
+cases = [
+    # The tiny reference network, the defaults of unet_config.
+    case("tiny", grid=(16, 24), tokens=3, t=417.5, scale=1.0, embedding=(32,), in_channels=12, out_channels=12,
+         block_out_channels=(32, 64, 56), layers_per_block=1, attention_head_dim=(1, 2, 2), cross_attention_dim=48,
+         norm_num_groups=8, down_block_types=("DownBlock2D", "CrossAttnDownBlock2D", "DownBlock2D"),
+         control={"conditioning_channels": 4}),
+    # All of Stable Diffusion 1.5 but the number of channels.
+    case("small_sd15", grid=(8, 16), tokens=7, t=981.0, scale=0.75, embedding=(4, 6, 8, 12), in_channels=4,
+         out_channels=4, block_out_channels=(16, 24, 32, 32), layers_per_block=2, attention_head_dim=8,
+         cross_attention_dim=20, norm_num_groups=8, down_block_types=("CrossAttnDownBlock2D",) * 3 + ("DownBlock2D",)),
+    # What Stable Diffusion 2.x does otherwise, and more than one transformer block.
+    case("small_sd2", grid=(8, 12), tokens=5, t=17.25, scale=1.5, embedding=(4, 6), in_channels=4, out_channels=4,
+         block_out_channels=(8, 12, 16), layers_per_block=2, attention_head_dim=(2, 3, 4), cross_attention_dim=6,
+         norm_num_groups=4, down_block_types=("CrossAttnDownBlock2D",) * 2 + ("DownBlock2D",),
+         use_linear_projection=True, transformer_layers_per_block=2),
+]
+array = ",\n\n".join(cases)
+text = f"""// SPDX-License-Identifier: MIT
+// What diffusers {diffusers.__version__} computes. Written by make_golden.py: change that, not this.
+// clang-format off
+#pragma once
+
+#include "golden_case.hpp"
+
+#include <array>
+
+namespace genrender::testing {{
+
+/// Networks, what goes in and what comes out.
+inline constexpr std::array<golden_case, {len(cases)}> golden_cases{{{{
+{array}
+}}}};
+
+}} // namespace genrender::testing
+"""
+pathlib.Path(__file__).with_name("golden.hpp").write_text(text)
