@@ -58,8 +58,8 @@ void group_norm_silu_of_numbers(benchmark::State& state) {
             }
             benchmark::DoNotOptimize(sums);
             for (std::size_t y = 0; y < made.grid().height; ++y) {
-                detail::each_register(made.row(y), in.data() + y * row, row,
-                                      [](std::size_t, auto x) { return detail::silu_of<float>(x); });
+                internal::each_register(made.row(y), in.data() + y * row, row,
+                                      [](std::size_t, auto x) { return internal::silu_of<float>(x); });
             }
         });
 }

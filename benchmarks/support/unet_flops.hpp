@@ -10,6 +10,8 @@
 
 namespace genrender::benchmarks {
 
+using namespace genrender::reference;
+
 /// The UNet of Stable Diffusion 1.5.
 inline unet_config stable_diffusion() {
     unet_config config;

@@ -25,6 +25,8 @@
 
 namespace genrender::examples {
 
+using namespace genrender::reference;
+
 /// How the animation is rendered: the paper's method, or a baseline of its comparison.
 enum class render_method : std::uint8_t { generative_rendering, per_frame, pix2video, tokenflow };
 

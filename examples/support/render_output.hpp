@@ -20,6 +20,8 @@
 
 namespace genrender::examples {
 
+using namespace genrender::reference;
+
 /// Images [frames, 3, height, width] in [0, 1] of latents [frames, 12, height / 2, width / 2].
 inline tensor<float, 4> decoded(latents<float> const& z) {
     auto const& shape = z.shape();

@@ -2,7 +2,7 @@
 // [GR sec. 4: TokenFlow*] The baseline against a plain second writing of it, and whole runs.
 #include <genrender/baselines/tokenflow.hpp>
 
-#include "../models/small_networks.hpp"
+#include "../reference/small_networks.hpp"
 #include "../support/dense_texture.hpp"
 #include "../support/sequence_method_laws.hpp"
 #include "small_baseline_run.hpp"

@@ -24,6 +24,8 @@
 
 namespace genrender::testing {
 
+using namespace genrender::reference;
+
 /// Numbers in [-1, 1): the scrambled sum (Steele et al. 2014, splitmix64) of a hash of the name and the index.
 inline std::vector<float> golden_values(std::string const& name, std::size_t count) {
     std::uint64_t begin = 0xCBF29CE484222325U;

@@ -32,8 +32,8 @@ TEST_SUITE("reference/haar") {
 
     TEST_CASE_TEMPLATE("the transform of a square keeps its energy and is its own inverse", Real, float, double) {
         auto const x = random_stack<Real, 1>({4}, 2);
-        auto const bands = detail::haar_square(x(0), x(1), x(2), x(3));
-        auto const back = detail::haar_square(bands[0], bands[1], bands[2], bands[3]);
+        auto const bands = internal::haar_square(x(0), x(1), x(2), x(3));
+        auto const back = internal::haar_square(bands[0], bands[1], bands[2], bands[3]);
         double before = 0;
         double after = 0;
         for (std::size_t i = 0; i < 4; ++i) {

@@ -25,6 +25,8 @@
 
 namespace genrender::testing {
 
+using namespace genrender::reference;
+
 /// Two levels of 8 and 12 channels, attention at the finer one and the bottom, for 4 latent channels.
 inline unet_config small_config() {
     unet_config config;

@@ -16,7 +16,7 @@
 
 namespace genrender::reference {
 
-namespace detail {
+namespace internal {
 
 using namespace genrender::detail;
 
@@ -79,13 +79,13 @@ GENRENDER_ALWAYS_INLINE inline lanes<Real> gelu_of(std::type_identity_t<lanes<Re
     }
 }
 
-} // namespace detail
+} // namespace internal
 
 /// Replaces every x by x / (1 + exp(-x)). The result of an element does not depend on where in memory it lies.
 template <class Real>
 void silu(std::span<Real> values) {
-    detail::each_register(values.data(), values.data(), values.size(),
-                          [](std::size_t, auto x) GENRENDER_ALWAYS_INLINE { return detail::silu_of<Real>(x); });
+    internal::each_register(values.data(), values.data(), values.size(),
+                          [](std::size_t, auto x) GENRENDER_ALWAYS_INLINE { return internal::silu_of<Real>(x); });
 }
 
 /// Replaces every a by a b Phi(b), b being the element of `gates` in its place, with Phi the distribution function of
@@ -96,13 +96,13 @@ void gate_by_gelu(std::span<Real> values, std::type_identity_t<std::span<Real co
     if (values.size() < n) {
         Real part[n] = {};
         std::copy_n(gates.data(), gates.size(), part);
-        genrender::detail::store(part, detail::gelu_of<Real>(genrender::detail::load(part)));
+        genrender::detail::store(part, internal::gelu_of<Real>(genrender::detail::load(part)));
         std::transform(values.begin(), values.end(), part, values.begin(), std::multiplies<Real>());
         return;
     }
-    detail::each_register(values.data(), values.data(), values.size(),
+    internal::each_register(values.data(), values.data(), values.size(),
                           [&](std::size_t i, auto a) GENRENDER_ALWAYS_INLINE {
-                              return a * detail::gelu_of<Real>(genrender::detail::load(gates.data() + i));
+                              return a * internal::gelu_of<Real>(genrender::detail::load(gates.data() + i));
                           });
 }
 

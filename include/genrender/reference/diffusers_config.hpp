@@ -21,7 +21,7 @@
 
 namespace genrender::reference {
 
-namespace detail {
+namespace internal {
 
 inline constexpr char const* cross_attention_down = "CrossAttnDownBlock2D";
 inline constexpr char const* plain_down = "DownBlock2D";
@@ -174,7 +174,7 @@ inline nlohmann::json encoder_json(unet_config const& config) {
             {"norm_num_groups", config.norm_num_groups}};
 }
 
-} // namespace detail
+} // namespace internal
 
 /// The architecture in the config.json of a UNet and of its ControlNet and in scheduler_config.json. Throws file_error
 /// naming the option: one that is unknown, has a value that the networks here cannot follow, or differs between UNet
@@ -183,31 +183,31 @@ inline unet_config read_diffusers_config(std::filesystem::path const& unet, std:
                                          std::filesystem::path const& scheduler) {
     unet_config config;
     config_file unet_file(unet);
-    detail::read_unet_options(config, unet_file);
+    internal::read_unet_options(config, unet_file);
     config_file controlnet_file(controlnet);
-    detail::read_controlnet_options(config, controlnet_file, unet_file);
+    internal::read_controlnet_options(config, controlnet_file, unet_file);
     config_file scheduler_file(scheduler);
-    detail::read_scheduler_options(config, scheduler_file);
+    internal::read_scheduler_options(config, scheduler_file);
     require_config(config);
     return config;
 }
 
 /// The config.json of a UNet: the options that are not diffusers' only choice.
 inline nlohmann::json unet_json(unet_config const& config) {
-    auto json = detail::encoder_json(config);
+    auto json = internal::encoder_json(config);
     json["_class_name"] = "UNet2DConditionModel";
     json["out_channels"] = config.out_channels;
     json["up_block_types"] = nlohmann::json::array();
     for (auto const has_attention : config.level_has_attention) {
         auto& types = json["up_block_types"];
-        types.insert(types.begin(), has_attention ? detail::cross_attention_up : detail::plain_up);
+        types.insert(types.begin(), has_attention ? internal::cross_attention_up : internal::plain_up);
     }
     return json;
 }
 
 /// The config.json of the ControlNet beside it.
 inline nlohmann::json controlnet_json(unet_config const& config) {
-    auto json = detail::encoder_json(config);
+    auto json = internal::encoder_json(config);
     json["_class_name"] = "ControlNetModel";
     json["conditioning_channels"] = config.conditioning_channels;
     json["conditioning_embedding_out_channels"] = config.conditioning_embedding_out_channels;
@@ -216,8 +216,8 @@ inline nlohmann::json controlnet_json(unet_config const& config) {
 
 /// The scheduler_config.json of their training. Throws value_error for prediction::flow, which has another schedule.
 inline nlohmann::json scheduler_json(unet_config const& config) {
-    auto const kind = std::find(detail::predictions.begin(), detail::predictions.end(), config.prediction_type);
-    require_value(kind != detail::predictions.end(), "scheduler_json", "prediction_type", "flow",
+    auto const kind = std::find(internal::predictions.begin(), internal::predictions.end(), config.prediction_type);
+    require_value(kind != internal::predictions.end(), "scheduler_json", "prediction_type", "flow",
                   "epsilon, velocity or clean");
     return {
         {"_class_name", "EulerDiscreteScheduler"},
@@ -225,7 +225,7 @@ inline nlohmann::json scheduler_json(unet_config const& config) {
         {"beta_start", config.beta_start},
         {"beta_end", config.beta_end},
         {"num_train_timesteps", config.num_train_timesteps},
-        {"prediction_type", detail::prediction_names[static_cast<std::size_t>(kind - detail::predictions.begin())]}};
+        {"prediction_type", internal::prediction_names[static_cast<std::size_t>(kind - internal::predictions.begin())]}};
 }
 
 } // namespace genrender::reference

@@ -103,7 +103,7 @@ public:
         }
         auto words = file.texts("words", {});
         for (auto const& word : words) {
-            auto const is_fine = detail::is_prompt_word(word) && std::count(words.begin(), words.end(), word) == 1;
+            auto const is_fine = internal::is_prompt_word(word) && std::count(words.begin(), words.end(), word) == 1;
             file.require(is_fine, "words", "words of lower-case letters and digits, each once");
         }
         file.require(!words.empty(), "words", "at least one");

@@ -20,7 +20,7 @@
 
 namespace genrender::reference {
 
-namespace detail {
+namespace internal {
 
 using namespace genrender::detail;
 
@@ -41,7 +41,7 @@ GENRENDER_ALWAYS_INLINE inline lanes<double> load_doubles(Real const* from) {
     }
 }
 
-} // namespace detail
+} // namespace internal
 
 /// Each group of neighbouring channels, over all tokens of a frame, to mean 0 and variance 1; then scale and shift a
 /// channel.
@@ -85,7 +85,7 @@ public:
             for (std::size_t y = i * rows; y < std::min(height, (i + 1) * rows); ++y) {
                 for (std::size_t x = 0; x < width; ++x) {
                     apply(out.row(y) + x * weight_.size(), in[y * width + x].data(), line,
-                          [](auto value) GENRENDER_ALWAYS_INLINE { return detail::silu_of<Real>(value); });
+                          [](auto value) GENRENDER_ALWAYS_INLINE { return internal::silu_of<Real>(value); });
                 }
             }
         });
@@ -104,7 +104,7 @@ private:
     template <class Function>
     static void apply(Real* to, Real const* from, line_by_channel const& line, Function const& then) {
         auto const channels = line.scale.size() - padding;
-        detail::each_register(to, from, channels, [&](std::size_t c, auto x) GENRENDER_ALWAYS_INLINE {
+        internal::each_register(to, from, channels, [&](std::size_t c, auto x) GENRENDER_ALWAYS_INLINE {
             return then(x * genrender::detail::load(line.scale.data() + c) + genrender::detail::load(line.shift.data() + c));
         });
     }
@@ -172,11 +172,11 @@ private:
         genrender::detail::lanes<double> sums[N]{};
         genrender::detail::lanes<double> products[N]{};
         unrolled<N>([&](auto i)
-                        GENRENDER_ALWAYS_INLINE { base[i] = detail::load_doubles(in.data() + first + i * lane); });
+                        GENRENDER_ALWAYS_INLINE { base[i] = internal::load_doubles(in.data() + first + i * lane); });
         for (std::size_t token = 0; token < in.extent(0); ++token) {
             auto const* const x = in[token].data() + first;
             unrolled<N>([&](auto i) GENRENDER_ALWAYS_INLINE {
-                auto const rest = detail::load_doubles(x + i * lane) - base[i];
+                auto const rest = internal::load_doubles(x + i * lane) - base[i];
                 sums[i] += rest;
                 products[i] += rest * rest;
             });

@@ -16,7 +16,7 @@ namespace genrender::reference {
 /// Bands of the transform.
 enum class haar_band : std::size_t { mean, left_right, top_bottom, diagonal };
 
-namespace detail {
+namespace internal {
 
 /// latent = scale * (band + shift).
 struct haar_scaling {
@@ -32,7 +32,7 @@ std::array<Real, 4> haar_square(Real a, Real b, Real c, Real d) {
     return {(a + b + c + d) / 2, (a - b + c - d) / 2, (a + b - c - d) / 2, (a - b - c + d) / 2};
 }
 
-} // namespace detail
+} // namespace internal
 
 /// Writes the latents [4 colours, height / 2, width / 2] of an image [colours, height, width] in [0, 1]; channel
 /// band * colours + colour. Throws value_error for odd extents, shape_error if the latents do not fit.
@@ -48,9 +48,9 @@ void haar_encode(strided_view<Real, 3> latent, in_view<Real, 3> image) {
                 auto const x = [&, c = colour](std::size_t down, std::size_t right) {
                     return 2 * image(c, 2 * row + down, 2 * column + right) - 1;
                 };
-                auto const bands = detail::haar_square(x(0, 0), x(0, 1), x(1, 0), x(1, 1));
+                auto const bands = internal::haar_square(x(0, 0), x(0, 1), x(1, 0), x(1, 1));
                 for (std::size_t band = 0; band < 4; ++band) {
-                    auto const [scale, shift] = detail::haar_scalings[band];
+                    auto const [scale, shift] = internal::haar_scalings[band];
                     latent(band * colours + colour, row, column) =
                         static_cast<Real>(scale) * (bands[band] + static_cast<Real>(shift));
                 }
@@ -72,11 +72,11 @@ void haar_decode(strided_view<Real, 3> image, in_view<Real, 3> latent) {
             for (std::size_t column = 0; column < latent.extent(2); ++column) {
                 std::array<Real, 4> bands{};
                 for (std::size_t band = 0; band < 4; ++band) {
-                    auto const [scale, shift] = detail::haar_scalings[band];
+                    auto const [scale, shift] = internal::haar_scalings[band];
                     bands[band] = latent(band * colours + colour, row, column) / static_cast<Real>(scale) -
                                   static_cast<Real>(shift);
                 }
-                auto const square = detail::haar_square(bands[0], bands[1], bands[2], bands[3]);
+                auto const square = internal::haar_square(bands[0], bands[1], bands[2], bands[3]);
                 for (std::size_t i = 0; i < 4; ++i) {
                     image(colour, 2 * row + i / 2, 2 * column + i % 2) = (square[i] + 1) / 2;
                 }

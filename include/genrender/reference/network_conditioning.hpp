@@ -64,7 +64,7 @@ stack<Real, 4> haar_hint(strided_view<float const, 3> inverse_depth) {
                     require_value(std::isfinite(value), "haar_hint", "inverse_depth", value, "finite numbers");
                     y[i] = static_cast<Real>(value);
                 }
-                auto const bands = detail::haar_square(y[0], y[1], y[2], y[3]);
+                auto const bands = internal::haar_square(y[0], y[1], y[2], y[3]);
                 hint(frame, 0, row, column) = bands[0] - 1;
                 for (std::size_t band = 1; band < 4; ++band) {
                     hint(frame, band, row, column) = std::clamp(12 * bands[band], Real(-4), Real(4));

@@ -21,7 +21,7 @@ namespace genrender::reference {
 inline constexpr std::array<std::string_view, 11> prompt_words{"plain",  "stripes", "checker", "dots",   "camo", "red",
                                                                "yellow", "green",   "blue",    "purple", "white"};
 
-namespace detail {
+namespace internal {
 
 /// Whether a byte belongs to a word of lower-case letters and digits. Bytes of other alphabets count as letters, so
 /// that an unknown word is named whole.
@@ -34,7 +34,7 @@ inline bool is_prompt_word(std::string_view word) {
     return !word.empty() && std::all_of(word.begin(), word.end(), is_prompt_letter);
 }
 
-} // namespace detail
+} // namespace internal
 
 /// Rows of the table of embeddings for a text: 0, then one for each word. Letter case does not matter; everything but
 /// letters and digits separates words. Throws value_error naming a word that is not among `words`, and those that are.
@@ -59,7 +59,7 @@ std::vector<std::size_t> prompt_rows(std::string_view text, Words const& words =
     };
     for (auto const letter : text) {
         auto const lower = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-        if (detail::is_prompt_letter(lower)) {
+        if (internal::is_prompt_letter(lower)) {
             word += lower;
         } else {
             finish_word();

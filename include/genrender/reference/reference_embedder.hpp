@@ -57,7 +57,7 @@ public:
         file.require(file["_class_name"] == "PromptEmbedder", "_class_name", "\"PromptEmbedder\"");
         auto words = file.texts("words", {});
         for (auto const& word : words) {
-            auto const is_fine = detail::is_prompt_word(word) && std::count(words.begin(), words.end(), word) == 1;
+            auto const is_fine = internal::is_prompt_word(word) && std::count(words.begin(), words.end(), word) == 1;
             file.require(is_fine, "words", "words of lower-case letters and digits, each once");
         }
         file.require(!words.empty(), "words", "at least one");

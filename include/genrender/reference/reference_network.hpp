@@ -31,7 +31,7 @@
 
 namespace genrender::reference {
 
-namespace detail {
+namespace internal {
 
 /// Ends a run of a network behind its last wanted site.
 struct last_site_has_run {};
@@ -52,7 +52,7 @@ struct stopping_processor {
     }
 };
 
-} // namespace detail
+} // namespace internal
 
 /// A UNet with classifier-free guidance and a ControlNet, conditioned for one animation. Its sites are the ControlNet's
 /// self-attention modules (network_kind::control) and then the UNet's, as they run. Features lie in host memory; frames
@@ -171,7 +171,7 @@ public:
             if (!last[branch]) {
                 continue;
             }
-            detail::stopping_processor<Processor> const stopping{&processor, *last[branch]};
+            internal::stopping_processor<Processor> const stopping{&processor, *last[branch]};
             auto pass = pass_of(branch, in, stopping);
             try {
                 auto encoded = encode(pass, in);
@@ -179,7 +179,7 @@ public:
                     lent->put(branch, {encoded, pass.time});
                 }
                 unet_->decode(pass, std::move(encoded));
-            } catch (detail::last_site_has_run const&) {
+            } catch (internal::last_site_has_run const&) {
                 // As asked.
             }
         }

@@ -36,7 +36,7 @@ struct safetensors_entry {
     std::uint64_t end = 0;          ///< one past the last byte
 };
 
-namespace detail {
+namespace internal {
 
 /// Bytes of one element, or nothing for a dtype this reader does not know.
 inline std::optional<std::uint64_t> element_bytes(std::string const& dtype) {
@@ -62,7 +62,7 @@ inline std::optional<std::uint64_t> checked_product(std::vector<std::size_t> con
     return product;
 }
 
-} // namespace detail
+} // namespace internal
 
 /// The tensors of a safetensors file. The header is read and checked whole when the file is opened, each tensor when it
 /// is asked for; an object may be read from several threads.
@@ -193,10 +193,10 @@ private:
             require(entry.begin <= entry.end, place, "begin <= end");
             require(entry.end <= data_bytes, place,
                     "an end within the " + std::to_string(data_bytes) + " bytes of data");
-            if (auto const bytes = detail::element_bytes(entry.dtype)) {
+            if (auto const bytes = internal::element_bytes(entry.dtype)) {
                 auto shape = entry.shape;
                 shape.push_back(*bytes);
-                auto const expected = detail::checked_product(shape);
+                auto const expected = internal::checked_product(shape);
                 auto const size = entry.dtype + " " + extents_text(entry.shape);
                 require(expected.has_value(), "tensor " + name + " is " + size, "a size that fits 64 bits");
                 require(entry.end - entry.begin == *expected, place, std::to_string(*expected) + " bytes for " + size);
@@ -256,7 +256,7 @@ inline void write_safetensors(std::string const& path, std::map<std::string, saf
     std::string data;
     for (auto const& [name, source] : tensors) {
         require_extents("write_safetensors", name.c_str(), std::array{source.values.size()},
-                        std::array{detail::checked_product(source.shape).value_or(0)});
+                        std::array{internal::checked_product(source.shape).value_or(0)});
         auto const begin = data.size();
         for (auto const value : source.values) {
             auto const half = half_of_float(value);

@@ -24,7 +24,7 @@
 
 namespace genrender::reference {
 
-namespace detail {
+namespace internal {
 
 /// FNV-1a, 64 bits: the address of a tensor is its name, so that no order of asking matters.
 constexpr std::uint64_t hash_of(std::string_view text, std::uint64_t hash = 0xCBF29CE484222325U) {
@@ -86,7 +86,7 @@ constexpr float slope_tap(std::size_t row, std::size_t column, std::size_t band)
                        : 0.05f * across * down;
 }
 
-} // namespace detail
+} // namespace internal
 
 /// The elements of a random tensor [out, in, ...], row-major, that depend on its name and `network` alone beside the
 /// seed. Matrices and 1x1 kernels are N(0, gain^2 / in); 3x3 kernels are blurs of random sign and strength with a
@@ -97,7 +97,7 @@ inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view net
     for (auto const extent : shape) {
         count *= extent;
     }
-    auto const hash = detail::hash_of(name, detail::hash_of(network));
+    auto const hash = internal::hash_of(name, internal::hash_of(network));
     auto const normal = [&](std::size_t i) {
         return static_cast<float>(normal_value(
             seed, random_stream::weights,
@@ -117,7 +117,7 @@ inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view net
     }
     auto const inputs = shape[1];
     auto const fan_in = name.ends_with("_embedding.weight") ? 1.0f : static_cast<float>(inputs);
-    auto const scale = detail::seeded_gain(name) / std::sqrt(fan_in);
+    auto const scale = internal::seeded_gain(name) / std::sqrt(fan_in);
     for (std::size_t i = 0; i < count; ++i) {
         values[i] = scale * normal(i);
     }
@@ -133,14 +133,14 @@ inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view net
             auto const in = pair % inputs;
             auto const band = is_last ? out / means : 0;
             auto const strength =
-                scale * (is_first  ? (in < inputs / 4 ? 3.5f : 0.35f) * detail::seeded_palette(seed, in, out)
-                         : is_last ? -detail::seeded_palette(seed, out % means, in)
+                scale * (is_first  ? (in < inputs / 4 ? 3.5f : 0.35f) * internal::seeded_palette(seed, in, out)
+                         : is_last ? -internal::seeded_palette(seed, out % means, in)
                                    : 1.3f * normal(count + pair));
             auto const blur = is_first || is_last ? 0.5f : 1.0f;
             for (std::size_t tap = 0; tap < 9; ++tap) {
                 auto& value = values[pair * 9 + tap];
-                value = band == 0 ? strength * detail::smooth_tap(tap / 3, tap % 3, blur) + 0.1f * value
-                                  : strength * detail::slope_tap(tap / 3, tap % 3, band);
+                value = band == 0 ? strength * internal::smooth_tap(tap / 3, tap % 3, blur) + 0.1f * value
+                                  : strength * internal::slope_tap(tap / 3, tap % 3, band);
             }
         }
     }

@@ -23,7 +23,7 @@
 
 namespace genrender::reference {
 
-namespace detail {
+namespace internal {
 
 /// The view itself if its rows are contiguous, else a copy of it in `storage`.
 template <class Real>
@@ -36,7 +36,7 @@ strided_view<Real const, 2> with_contiguous_rows(strided_view<Real const, 2> vie
     return storage.view();
 }
 
-} // namespace detail
+} // namespace internal
 
 /// diffusers' BasicTransformerBlock: h += attn1(norm1(h)), h += attn2(norm2(h), prompt), h += ff(norm3(h)).
 template <class Real>
@@ -102,7 +102,7 @@ private:
         require_extents("transformer_block", "F", F.extents(), f.extents());
         pass.each_frame([&](std::size_t i) {
             stack<Real, 2> storage;
-            attn1_.add_output(h[i], detail::with_contiguous_rows<Real>(F.view()[i], storage), pass.tokens());
+            attn1_.add_output(h[i], internal::with_contiguous_rows<Real>(F.view()[i], storage), pass.tokens());
         });
     }
 

@@ -95,7 +95,7 @@ public:
     std::size_t parameter_count() const {
         std::size_t count = 0;
         for (auto const& [name, shape] : taken_) {
-            count += static_cast<std::size_t>(detail::checked_product(shape).value_or(0));
+            count += static_cast<std::size_t>(internal::checked_product(shape).value_or(0));
         }
         return count;
     }
