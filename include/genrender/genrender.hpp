@@ -3,7 +3,6 @@
 // evaluation.hpp and reference.hpp.
 #pragma once
 
-#include <genrender/core/chunked_memory.hpp>
 #include <genrender/core/elementwise.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/exponential.hpp>

@@ -4,8 +4,8 @@
 
 #include <genrender/core/vector_lanes.hpp>
 #include <genrender/core/parallel.hpp>
+#include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
-#include <genrender/reference/feature_memory.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -53,7 +53,8 @@ public:
     /// Element (i, o) is `weight_of(i, o)`.
     template <class WeightOf>
     weight_panels(std::size_t inputs, std::size_t outputs, WeightOf const& weight_of)
-        : inputs_(inputs), outputs_(outputs), weights_(inputs * ((outputs + lane - 1) / lane * lane)) {
+        : inputs_(inputs), outputs_(outputs),
+          weights_(stack<Real, 1>::uninitialized({inputs * ((outputs + lane - 1) / lane * lane)})) {
         auto* to = weights_.data();
         for (std::size_t first = 0; first < outputs; first += panel) {
             auto const width = outputs - first > lane ? panel : lane;
@@ -175,7 +176,7 @@ private:
 
     std::size_t inputs_ = 0;
     std::size_t outputs_ = 0;
-    feature_memory<Real> weights_;
+    stack<Real, 1> weights_;
 };
 
 } // namespace genrender::reference
