@@ -160,7 +160,6 @@ genrender_component(inspection HEADERS
     inspection/pixel_check.hpp
     inspection/pixel_lattice.hpp
     inspection/preflight.hpp
-    inspection/preflight_text.hpp
     inspection/recommendation.hpp
     inspection/screen_search.hpp
     inspection/texture_tiles.hpp)

@@ -9,7 +9,8 @@
 #include <memory>
 
 struct turning_box {
-    std::shared_ptr<genrender::mesh const> box = std::make_shared<genrender::mesh const>(genrender::make_box({1, 1, 1}));
+    std::shared_ptr<genrender::mesh const> box =
+        std::make_shared<genrender::mesh const>(genrender::make_box({1, 1, 1}));
     std::size_t frame_count() const { return 2; }
     genrender::posed_scene frame(genrender::frame_index i) const {
         auto const turn = glm::rotate(glm::mat4(1), static_cast<float>(i.value), {0, 1, 0});
