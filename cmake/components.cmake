@@ -31,19 +31,24 @@ set(genrender_components "")
 genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     genrender.hpp
     core/chunked_memory.hpp
-    core/elementwise.hpp
+    core/each_target.inl
     core/error.hpp
-    core/exponential.hpp
+    core/half_precision.hpp
+    core/half_storage.hpp
     core/index.hpp
     core/linalg.hpp
+    core/linear_combination.hpp
+    core/linear_combination.inl
     core/parallel.hpp
     core/random.hpp
-    core/register_vector.hpp
     core/sparse_rows.hpp
     core/stack.hpp
     core/strided_view.hpp
     core/tensor.hpp
-    core/vector_lanes.hpp
+    core/vector_target.hpp
+    core/vector_unit.hpp
+    core/vectors.hpp
+    core/vectors.inl
     guidance/background_mask.hpp
     guidance/canonical_maps.hpp
     guidance/cell_extents.hpp
@@ -62,7 +67,9 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     correspondence/reproject.hpp
     correspondence/sample_bins.hpp
     correspondence/sample_distances.hpp
+    correspondence/sample_distances.inl
     correspondence/sample_grid.hpp
+    correspondence/sample_grid.inl
     correspondence/sample_pack.hpp
     correspondence/sample_tree.hpp
     correspondence/surface_correspondence.hpp
@@ -77,21 +84,25 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     noise/brownian_bridge.hpp
     noise/initial_noise.hpp
     noise/noise_request.hpp
-    noise/noise_tree.hpp
     noise/noise_texture.hpp
-    noise/normal_lanes.hpp
+    noise/noise_tree.hpp
+    noise/normals.hpp
+    noise/normals.inl
     noise/surface_noise.hpp
     attention/attention_call.hpp
     attention/attention_processor.hpp
     attention/attention_scratch.hpp
+    attention/attention_scratch.inl
     attention/attention_site.hpp
     attention/attention_tile.hpp
+    attention/attention_tile.inl
     attention/extended_attention.hpp
     attention/feature_storage.hpp
     attention/host_features.hpp
     attention/key_value_view.hpp
     attention/plain_attention.hpp
     attention/scaled_dot_product.hpp
+    attention/scaled_dot_product.inl
     sampling/classifier_free_guidance.hpp
     sampling/denoiser.hpp
     sampling/dpmpp_2m.hpp
@@ -107,8 +118,8 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     keyframes/recorder.hpp
     keyframes/stoppable_denoiser.hpp
     blending/blend_plan.hpp
-    blending/channel_lanes.hpp
     blending/mix_rows.hpp
+    blending/mix_rows.inl
     blending/texel_weights.hpp
     injection/feature_io.hpp
     injection/host_attention_call.hpp
@@ -116,7 +127,9 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     injection/post_attention.hpp
     injection/pre_attention.hpp
     normalization/adain.hpp
+    normalization/adain.inl
     normalization/channel_statistics.hpp
+    normalization/channel_statistics.inl
     pipeline/generative_rendering.hpp
     pipeline/memory_plan.hpp
     pipeline/progress.hpp
@@ -183,6 +196,7 @@ genrender_component(evaluation HEADERS
 genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference.hpp
     reference/activation.hpp
+    reference/activation.inl
     reference/attention_matrices.hpp
     reference/checked_json.hpp
     reference/config_file.hpp
@@ -197,9 +211,10 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/feed_forward.hpp
     reference/forward_pass.hpp
     reference/group_norm.hpp
+    reference/group_norm.inl
     reference/haar.hpp
-    reference/half_precision.hpp
     reference/layer_norm.hpp
+    reference/layer_norm.inl
     reference/linear.hpp
     reference/network_conditioning.hpp
     reference/padded_map.hpp
@@ -219,4 +234,5 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/unet_config.hpp
     reference/unet_encoder.hpp
     reference/weight_panels.hpp
+    reference/weight_panels.inl
     reference/weights.hpp)

@@ -2,6 +2,7 @@
 // [GR eq. 1] Attention over a frame's own tokens and those of keyframes, beside Eigen's product of as many FLOPs.
 #include <genrender/attention/scaled_dot_product.hpp>
 
+#include <genrender/core/linalg.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/core/stack.hpp>
 

@@ -27,7 +27,7 @@ function(write_house)
     file(WRITE ${COPY}/include/genrender/reference/network.hpp "// SPDX-License-Identifier: MIT\n// Network.\n#pragma once\n\
 #include <text/text.hpp>\n#include <fast/fast.hpp>\n")
     file(WRITE ${COPY}/include/genrender/scene/mesh.hpp "// SPDX-License-Identifier: MIT\n// Mesh.\n#pragma once\n\
-#include <genrender/scene/mesh.inl>\n")
+#define GENRENDER_KERNELS <genrender/scene/mesh.inl>\n")
     file(WRITE ${COPY}/include/genrender/scene/mesh.inl "// SPDX-License-Identifier: MIT\n// Its body.\n")
     file(WRITE ${COPY}/include/genrender/blending/thing.hpp "${header}")
     file(WRITE ${COPY}/include/genrender/genrender.hpp "// SPDX-License-Identifier: MIT\n// All.\n\
@@ -120,7 +120,7 @@ mutate(${components} "genrender.hpp " "" "genrender.hpp: is not among the header
 mutate(${components} "HEADERS scene.hpp scene/mesh.hpp scene/mesh.inl" "" "scene.hpp: is not among the headers of scene")
 mutate(include/genrender/scene/mesh.inl "// Its body.\n" "" "mesh.inl: starts with")
 mutate(include/genrender/scene/mesh.inl "" "${many_lines}" "mesh.inl: 302 lines")
-mutate(include/genrender/scene/mesh.hpp "#include <genrender/scene/mesh.inl>" "" "mesh.inl: is included by no header")
+mutate(include/genrender/scene/mesh.hpp "<genrender/scene/mesh.inl>" "" "mesh.inl: is included by no header")
 mutate(include/genrender/genrender.hpp "blending/thing.hpp" "blending/other.hpp" "genrender.hpp: lacks .*blending/thing.hpp")
 mutate(include/genrender/genrender.hpp "" "#include <genrender/reference/network.hpp>\n" "network.hpp>, which is not of core")
 mutate(include/genrender/scene.hpp "" "#include <genrender/core/index.hpp>\n" "index.hpp>, which is not of scene")
