@@ -33,6 +33,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     core/chunked_memory.hpp
     core/each_target.inl
     core/error.hpp
+    core/finite.hpp
     core/half_precision.hpp
     core/half_storage.hpp
     core/index.hpp

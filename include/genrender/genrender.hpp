@@ -5,6 +5,7 @@
 
 #include <genrender/core/chunked_memory.hpp>
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/half_precision.hpp>
 #include <genrender/core/half_storage.hpp>
 #include <genrender/core/index.hpp>
