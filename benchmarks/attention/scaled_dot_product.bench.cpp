@@ -3,6 +3,7 @@
 // more and more threads beside one.
 #include <genrender/attention/scaled_dot_product.hpp>
 
+#include <genrender/core/linalg.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/core/stack.hpp>
 

@@ -4,6 +4,7 @@
 #include <genrender/blending/mix_rows.hpp>
 
 #include <genrender/blending/blend_plan.hpp>
+#include <genrender/core/linalg.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/correspondence/footprint_map.hpp>

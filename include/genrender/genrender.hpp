@@ -4,19 +4,21 @@
 #pragma once
 
 #include <genrender/core/chunked_memory.hpp>
-#include <genrender/core/elementwise.hpp>
 #include <genrender/core/error.hpp>
-#include <genrender/core/exponential.hpp>
+#include <genrender/core/half_precision.hpp>
+#include <genrender/core/half_storage.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/linalg.hpp>
+#include <genrender/core/linear_combination.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/random.hpp>
-#include <genrender/core/register_vector.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/core/vector_lanes.hpp>
+#include <genrender/core/vector_target.hpp>
+#include <genrender/core/vector_unit.hpp>
+#include <genrender/core/vectors.hpp>
 
 #include <genrender/guidance/background_mask.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
@@ -53,9 +55,9 @@
 #include <genrender/noise/brownian_bridge.hpp>
 #include <genrender/noise/initial_noise.hpp>
 #include <genrender/noise/noise_request.hpp>
-#include <genrender/noise/noise_tree.hpp>
 #include <genrender/noise/noise_texture.hpp>
-#include <genrender/noise/normal_lanes.hpp>
+#include <genrender/noise/noise_tree.hpp>
+#include <genrender/noise/normals.hpp>
 #include <genrender/noise/surface_noise.hpp>
 
 #include <genrender/attention/attention_call.hpp>
@@ -87,7 +89,6 @@
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 
 #include <genrender/blending/blend_plan.hpp>
-#include <genrender/blending/channel_lanes.hpp>
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/texel_weights.hpp>
 

@@ -18,7 +18,6 @@
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/group_norm.hpp>
 #include <genrender/reference/haar.hpp>
-#include <genrender/reference/half_precision.hpp>
 #include <genrender/reference/layer_norm.hpp>
 #include <genrender/reference/linear.hpp>
 #include <genrender/reference/network_conditioning.hpp>

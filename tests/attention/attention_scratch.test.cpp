@@ -2,7 +2,10 @@
 // [GR eq. 1] Keys of blocks in a row of tiles, and queries in and out of the lanes.
 #include <genrender/attention/attention_scratch.hpp>
 
+#include <genrender/core/linalg.hpp>
 #include <genrender/core/stack.hpp>
+
+#include "support/each_vector_target.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,111 +15,26 @@
 #include <utility>
 #include <vector>
 
+#define GENRENDER_KERNELS "attention/attention_scratch.test.inl"
+#include <genrender/core/each_target.inl>
+
 using namespace genrender;
-using genrender::testing::random_stack;
+using testing::at_each_vector_target;
 
 TEST_SUITE("attention/attention_scratch") {
     TEST_CASE_TEMPLATE("tiles hold the keys of all blocks in a row whatever their sizes", Real, float, double) {
-        constexpr std::size_t head_size = 3;
-        auto const K = random_stack<Real, 2>({200, 2 * head_size}, 1);
-        auto const V = random_stack<Real, 2>({200, 2 * head_size}, 2);
-        std::vector<Real> const halves(13, Real{0.5});
-        std::vector<key_value_view<Real>> blocks;
-        std::size_t begin = 0;
-        for (auto const count : std::vector<std::size_t>{0, 1, 50, 0, 136, 13}) {
-            blocks.push_back({K.view().slice(begin, count), V.view().slice(begin, count)});
-            begin += count;
-        }
-        blocks.back().counts = {halves.data(), {13}};
-        for (auto const in_place : {false, true}) {
-            CAPTURE(in_place);
-            detail::scratch_memory<Real> memory(detail::key_tiles<Real>::scratch(head_size));
-            detail::key_tiles<Real> tiles(blocks, 1, head_size, memory, in_place);
-            std::size_t key = 0;
-            while (tiles.next()) {
-                auto const& tile = tiles.tile();
-                CHECK(tile.is_far == in_place);
-                CHECK(tiles.is_last() == (key + tile.keys == 200));
-                for (std::size_t k = 0; k < tile.keys; ++k, ++key) {
-                    auto const count = key < 187 ? Real{1} : Real{0.5};
-                    CHECK(tile.counts[k] == count);
-                    for (std::size_t c = 0; c < head_size; ++c) {
-                        CHECK(tile.K[k][c] == K(key, head_size + c));
-                        CHECK(tile.V[k][c] == count * V(key, head_size + c));
-                    }
-                    // Copied only where they must be: values that count more or less than once.
-                    CHECK((tile.K[k] == &K(key, head_size)) == in_place);
-                    CHECK((tile.V[k] == &V(key, head_size)) == (in_place && key < 187));
-                }
-                for (auto k = tile.keys; k < detail::tile_keys; ++k) {
-                    CHECK(tile.counts[k] == 0);
-                    CHECK(tile.K[k] == tile.K[tile.keys - 1]);
-                    CHECK(tile.V[k] == tile.V[tile.keys - 1]);
-                }
-            }
-            CHECK(key == 200);
-        }
+        at_each_vector_target([] { GENRENDER_KERNEL(testing, check_tiles_of_blocks<Real>)(); });
     }
 
     TEST_CASE("keys of other strides or storage are copied even where keys are read in place") {
-        auto const K = random_stack<float, 2>({4, 5}, 1);
-        stack<bfloat16, 2> V({5, 4});
-        V(2, 1) = static_cast<bfloat16>(3);
-        std::vector<key_value_view<float>> const blocks{
-            {strided_view<float const, 2>(K.data(), {5, 4}, {1, 5}), std::as_const(V).view()}};
-        detail::scratch_memory<float> memory(detail::key_tiles<float>::scratch(4));
-        detail::key_tiles<float> tiles(blocks, 0, 4, memory, true);
-        REQUIRE(tiles.next());
-        CHECK(tiles.tile().keys == 5);
-        CHECK(tiles.tile().K[2][3] == K(3, 2));
-        CHECK(tiles.tile().V[2][1] == 3);
-        CHECK_FALSE(tiles.next());
+        at_each_vector_target([] { GENRENDER_KERNEL(testing, check_copies_of_keys)(); });
     }
 
     TEST_CASE_TEMPLATE("queries that go into a tile come out of it", Real, float, double) {
-        constexpr auto registers = detail::tile_registers;
-        using tile_type = detail::query_tile<Real, registers>;
-        for (auto const channels : std::vector<std::size_t>{1, 5, 16, 17, 40}) {
-            for (auto const count : {std::size_t{1}, tile_type::queries - 1, tile_type::queries}) {
-                auto const Q = random_stack<Real, 2>({count, channels}, 1);
-                std::vector<Real> memory(tile_type::size(channels), Real{7});
-                tile_type const tile(memory.data(), channels);
-                detail::read_queries<Real>(tile, Q.view(), Real{2});
-                for (std::size_t q = 0; q < tile_type::queries; ++q) {
-                    CHECK(tile.Q[(channels - 1) * tile_type::queries + q] ==
-                          (q < count ? 2 * Q(q, channels - 1) : Real{0}));
-                    CHECK(tile.shift[q] == 0);
-                    CHECK(tile.sum[q] == 0);
-                    tile.sum[q] = 4;
-                }
-                std::copy_n(tile.Q, channels * tile_type::queries, tile.F);
-                stack<Real, 2> F({count, channels});
-                detail::write_results(F.view(), tile);
-                for (std::size_t q = 0; q < count; ++q) {
-                    for (std::size_t c = 0; c < channels; ++c) {
-                        CHECK(F(q, c) == Q(q, c) / 2);
-                    }
-                }
-            }
-        }
+        at_each_vector_target([] { GENRENDER_KERNEL(testing, check_queries_in_and_out<Real>)(); });
     }
 
     TEST_CASE("16-bit rows are read as the numbers they store") {
-        stack<float16, 2> half({2, 37});
-        stack<bfloat16, 2> brain({2, 37});
-        for (std::size_t c = 0; c < 37; ++c) {
-            half(1, c) = static_cast<float16>(0.37F * static_cast<float>(c) - 3);
-            brain(1, c) = static_cast<bfloat16>(0.37F * static_cast<float>(c) - 3);
-        }
-        std::vector<float> row(37);
-        detail::read_rows(row.data(), strided_view<float16 const, 2>(half), 1, 1);
-        for (std::size_t c = 0; c < 37; ++c) {
-            CHECK(row[c] == static_cast<float>(half(1, c)));
-        }
-        std::vector<double> wide(37);
-        detail::read_rows(wide.data(), strided_view<bfloat16 const, 2>(brain), 1, 1);
-        for (std::size_t c = 0; c < 37; ++c) {
-            CHECK(wide[c] == static_cast<double>(brain(1, c)));
-        }
+        at_each_vector_target([] { GENRENDER_KERNEL(testing, check_half_rows)(); });
     }
 }

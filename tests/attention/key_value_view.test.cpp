@@ -2,6 +2,7 @@
 // Views of stored features: what converts to them, and what they read.
 #include <genrender/attention/key_value_view.hpp>
 
+#include <genrender/core/linalg.hpp>
 #include <genrender/core/stack.hpp>
 
 #include <doctest/doctest.h>

@@ -7,6 +7,7 @@
 #include "support/counted_memory.hpp"
 #include "support/random_stack.hpp"
 
+#include <genrender/core/linalg.hpp>
 #include <genrender/core/parallel.hpp>
 
 #include <algorithm>

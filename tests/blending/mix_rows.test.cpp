@@ -2,6 +2,8 @@
 // [GR sec. 3.2] The kernel of blending on every layout.
 #include <genrender/blending/mix_rows.hpp>
 
+#include <genrender/core/linalg.hpp>
+
 #include "../support/random_stack.hpp"
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 // Keys and values that attention reads where they lie: any strides, stored as Real or in 16 bits.
 #pragma once
 
-#include <genrender/core/linalg.hpp>
+#include <genrender/core/half_storage.hpp>
 #include <genrender/core/strided_view.hpp>
 
 #include <array>
@@ -14,8 +14,30 @@
 
 namespace genrender {
 
-/// A read-only view [tokens, channels] of features in any of the storage types Real, float16 and bfloat16, whose
-/// elements are read as Real. Views and tensors of each of them convert to it.
+namespace detail {
+
+/// The type of the elements of a view, or of what has a `to_view` of two axes.
+template <class Source>
+struct stored_element {};
+template <class T>
+struct stored_element<strided_view<T, 2>> {
+    using type = T;
+};
+template <class Source>
+    requires requires(Source&& source) { to_view(source); }
+struct stored_element<Source> : stored_element<decltype(to_view(std::declval<Source&>()))> {};
+
+/// Two axes of numbers of 16 bits.
+template <class Source>
+concept half_source = requires {
+    typename stored_element<std::remove_cvref_t<Source>>::type;
+}
+&&half_storage<typename stored_element<std::remove_cvref_t<Source>>::type>;
+
+} // namespace detail
+
+/// A read-only view [tokens, channels] of features whose elements are read as Real and kept as Real or in 16 bits, of
+/// any type that half_bits knows. Views and tensors of each of them convert to it.
 template <class Real>
 class stored_view {
 public:
@@ -25,20 +47,17 @@ public:
 
     template <class Source>
         requires(!std::same_as<std::remove_cvref_t<Source>, stored_view> &&
-                 (std::convertible_to<Source, strided_view<Real const, 2>> ||
-                  std::convertible_to<Source, strided_view<float16 const, 2>> ||
-                  std::convertible_to<Source, strided_view<bfloat16 const, 2>>))
+                 (std::convertible_to<Source, strided_view<Real const, 2>> || detail::half_source<Source>))
     stored_view(Source&& source) {
         if constexpr (std::convertible_to<Source, strided_view<Real const, 2>>) {
             view_ = strided_view<Real const, 2>(std::forward<Source>(source));
-        } else if constexpr (std::convertible_to<Source, strided_view<float16 const, 2>>) {
-            view_ = strided_view<float16 const, 2>(std::forward<Source>(source));
         } else {
-            view_ = strided_view<bfloat16 const, 2>(std::forward<Source>(source));
+            using element = typename detail::stored_element<std::remove_cvref_t<Source>>::type;
+            view_ = to_bits_view(strided_view<element const, 2>(std::forward<Source>(source)));
         }
     }
 
-    /// What `visitor` returns for the view in its storage type.
+    /// What `visitor` returns for the view in its storage type: Real const, float16_bits const or bfloat16_bits const.
     template <class Visitor>
     decltype(auto) visit(Visitor&& visitor) const {
         return std::visit(std::forward<Visitor>(visitor), view_);
@@ -60,7 +79,8 @@ public:
     }
 
 private:
-    std::variant<strided_view<Real const, 2>, strided_view<float16 const, 2>, strided_view<bfloat16 const, 2>> view_;
+    std::variant<strided_view<Real const, 2>, strided_view<float16_bits const, 2>, strided_view<bfloat16_bits const, 2>>
+        view_;
 };
 
 /// Keys and values of some tokens.

@@ -2,6 +2,7 @@
 // The one door to Eigen: views as maps, so that matrix products run on memory that stays where it is.
 #pragma once
 
+#include <genrender/core/half_storage.hpp>
 #include <genrender/core/strided_view.hpp>
 
 #include <Eigen/Core>
@@ -16,6 +17,14 @@ namespace genrender {
 /// in float or double.
 using float16 = Eigen::half;
 using bfloat16 = Eigen::bfloat16;
+template <>
+struct half_bits<float16> {
+    using type = float16_bits;
+};
+template <>
+struct half_bits<bfloat16> {
+    using type = bfloat16_bits;
+};
 
 /// A row-major matrix that owns its elements.
 template <class Real>

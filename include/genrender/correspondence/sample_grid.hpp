@@ -2,6 +2,7 @@
 // The fast way through a frame's kept pixels: only those around a point are looked at, in single precision.
 #pragma once
 
+#include <genrender/core/vectors.hpp>
 #include <genrender/correspondence/sample_bins.hpp>
 #include <genrender/correspondence/sample_distances.hpp>
 #include <genrender/correspondence/sample_tree.hpp>
@@ -14,6 +15,31 @@
 #include <optional>
 #include <vector>
 
+namespace genrender::detail {
+
+/// Whether a pixel shows a point, as far as single precision can tell.
+enum class sample_verdict : std::uint8_t { shown, not_shown, unsure };
+
+struct sample_answer {
+    sample_verdict is;
+    std::uint32_t number; ///< of the pixel that shows it, in the order that sample_bins brings them in
+};
+
+struct sample_judgement {
+    sample_answer given;
+    float canonical; ///< square of the canonical distance of the pixel that shows the point
+};
+
+/// Pixels that sample_tree visits.
+inline constexpr auto visited_samples = static_cast<std::int32_t>(sample_tree<2>::visited);
+/// How far squares of canonical distances may be off.
+inline constexpr float square_tolerance = 1e-5F;
+
+} // namespace genrender::detail
+
+#define GENRENDER_KERNELS <genrender/correspondence/sample_grid.inl>
+#include <genrender/core/each_target.inl>
+
 namespace genrender {
 
 /// Which kept pixel of a frame shows a point: of sample_tree's nearest few the one closest on the screen, where single
@@ -21,11 +47,8 @@ namespace genrender {
 template <std::size_t D>
 class sample_grid {
 public:
-    enum class verdict : std::uint8_t { shown, not_shown, unsure };
-    struct answer {
-        verdict is;
-        std::uint32_t number; ///< of the pixel that shows it, in the order that sample_bins brings them in
-    };
+    using verdict = detail::sample_verdict;
+    using answer = detail::sample_answer;
 
     sample_grid() = default;
 
@@ -35,26 +58,24 @@ public:
         : bins_(samples, reach, rows, columns, spacing) {}
 
     /// The pixel that shows a point which was seen with a footprint.
-    answer find([[maybe_unused]] std::array<float, D> const& place,
-                [[maybe_unused]] surface_footprint<D> const& footprint) const {
-#if defined(__GNUC__)
+    answer find(std::array<float, D> const& place, surface_footprint<D> const& footprint) const {
         auto const bin = bins_.bin_at(place);
         if (bins_.is_beyond_reach(place, bin, footprint)) {
             return {verdict::not_shown, 0};
         }
+        auto const judge_block = GENRENDER_KERNEL(detail, judge_block<D>);
         for (std::int64_t around = 1; bin && bins_.is_precise(); around *= 2) {
             block const near(bins_, *bin, around);
-            if (near.count >= enough || near.is_everything) {
-                if (near.count > distances::most || near.row_count > block::most_rows) {
-                    break;
-                }
-                distances const found(bins_, near, place, footprint);
-                if (near.is_everything || found.count_inside() >= visited) {
-                    return judge(found);
-                }
+            if (near.count < enough && !near.is_everything) {
+                continue;
+            }
+            if (near.count > detail::most_measured || near.row_count > block::most_rows) {
+                break;
+            }
+            if (auto const given = judge_block(bins_, near, place, footprint)) {
+                return *given;
             }
         }
-#endif
         return {verdict::unsure, 0};
     }
 
@@ -63,66 +84,6 @@ private:
 
     /// Pixels around a point to look at: most often the nearest few are among so many.
     static constexpr std::size_t enough = 20;
-
-#if defined(__GNUC__)
-    using distances = sample_distances<D>;
-
-    static constexpr auto infinity = std::numeric_limits<float>::infinity();
-    static constexpr auto visited = static_cast<std::int32_t>(sample_tree<D>::visited);
-    /// How far squares of canonical distances may be off.
-    static constexpr float square_tolerance = 1e-5F;
-
-    /// Of all pixels measured, if that is the same as of the nearest few, else of these.
-    answer judge(distances const& found) const {
-        auto const of_all = judge_within(found, infinity);
-        if (of_all.given.is == verdict::not_shown) {
-            return of_all.given;
-        }
-        if (of_all.given.is == verdict::shown &&
-            found.count_within(of_all.canonical * (1 + square_tolerance)) <= visited) {
-            return of_all.given;
-        }
-        auto const radius = radius_of_visited(found);
-        return radius ? judge_within(found, *radius).given : answer{verdict::unsure, 0};
-    }
-
-    struct judgement {
-        answer given;
-        float canonical; ///< square of the canonical distance of the pixel that shows the point
-    };
-
-    /// Of the pixels whose squares of the canonical distance are at most `radius`.
-    judgement judge_within(distances const& found, float radius) const {
-        auto const best = found.closest_within(radius);
-        if (best > bins_.reach() + distances::tolerance) {
-            return {{verdict::not_shown, 0}, 0};
-        }
-        if (best >= 0 && best < bins_.reach() - distances::tolerance) {
-            // There must be one alone that is as close.
-            if (auto const only = found.only_one_within(radius, best + distances::tolerance)) {
-                return {{verdict::shown, only->first}, only->second};
-            }
-        }
-        return {{verdict::unsure, 0}, 0};
-    }
-
-    /// Square of a canonical distance within which lie as many pixels as the tree visits; none if two are about as far
-    /// and only one is among them.
-    static std::optional<float> radius_of_visited(distances const& found) {
-        auto radius = -1.0F;
-        for (std::int32_t within = 0; within < visited;) {
-            radius = found.next_beyond(radius);
-            if (radius == infinity) {
-                return infinity;
-            }
-            within = found.count_within(radius);
-            if (within > visited) {
-                return std::nullopt;
-            }
-        }
-        return found.next_beyond(radius) > radius * (1 + square_tolerance) ? std::optional(radius) : std::nullopt;
-    }
-#endif
 
     sample_bins<D> bins_;
 };

@@ -7,7 +7,7 @@
 #include <genrender/core/random.hpp>
 #include <genrender/noise/brownian_bridge.hpp>
 #include <genrender/noise/noise_request.hpp>
-#include <genrender/noise/normal_lanes.hpp>
+#include <genrender/noise/normals.hpp>
 
 #include <algorithm>
 #include <array>
@@ -98,17 +98,14 @@ private:
         /// Draws values 4 * block ... of N(0, 1) of a node, `blocks` times four a channel: drawn_ [channels, 4 *
         /// blocks].
         void draw(key const& node, std::size_t block, std::size_t blocks) {
-            constexpr std::size_t at_once = 4;
             auto const count = channels_ * blocks;
-            drawn_.resize((count + at_once - 1) / at_once * at_once * 4);
-            for (std::size_t first = 0; first < count; first += at_once) {
-                std::array<std::array<std::uint32_t, 4>, at_once> counters{};
-                for (std::size_t n = 0; n < at_once; ++n) {
-                    counters[n] = {static_cast<std::uint32_t>(block + (first + n) % blocks),
-                                   static_cast<std::uint32_t>((first + n) / blocks), 2, 0};
-                }
-                normals_of(counters, node, &drawn_[4 * first]);
+            counters_.assign((count + normals_at_once - 1) / normals_at_once * normals_at_once, {});
+            for (std::size_t n = 0; n < count; ++n) {
+                counters_[n] = {static_cast<std::uint32_t>(block + n % blocks), static_cast<std::uint32_t>(n / blocks),
+                                2, 0};
             }
+            drawn_.resize(4 * counters_.size());
+            normals_of(counters_, node, drawn_.data());
         }
 
         /// Divides the node's values W [channels] among its children: the result is [children, channels].
@@ -257,6 +254,7 @@ private:
         std::vector<look> looks_;
         std::vector<look> parts_;
         std::vector<double> part_shares_;
+        std::vector<std::array<std::uint32_t, 4>> counters_;
         std::vector<double> drawn_;
         std::array<double, children> root_shares_{};
     };

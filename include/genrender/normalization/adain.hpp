@@ -2,7 +2,8 @@
 // [GR sec. 3.4] Latent normalisation: AdaIN that gives every frame's background the statistics of the first frame's.
 #pragma once
 
-#include <genrender/core/elementwise.hpp>
+#include <genrender/core/strided_view.hpp>
+#include <genrender/core/vectors.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
 
 #include <algorithm>
@@ -11,6 +12,9 @@
 #include <cstdint>
 #include <type_traits>
 #include <vector>
+
+#define GENRENDER_KERNELS <genrender/normalization/adain.inl>
+#include <genrender/core/each_target.inl>
 
 namespace genrender {
 
@@ -23,12 +27,16 @@ void adain(strided_view<Real, 3> z, channel_statistics<std::type_identity_t<Real
     require_extents("adain", "to", std::array{to.mean.size()}, std::array{z.extent(0)});
     for (std::size_t c = 0; c < z.extent(0); ++c) {
         auto const scale = to.deviation[c] / from.deviation[c];
-        for_each_element(
-            z[c],
-            [scale, mean_from = from.mean[c], mean_to = to.mean[c]](auto const& value) {
-                return (value - mean_from) * scale + mean_to;
-            },
-            z[c]);
+        if (z[c].is_contiguous()) {
+            GENRENDER_KERNEL(detail, rescale<Real>)(z[c].data(), z[c].size(), from.mean[c], scale, to.mean[c]);
+            continue;
+        }
+        for (std::size_t row = 0; row < z.extent(1); ++row) {
+            for (std::size_t column = 0; column < z.extent(2); ++column) {
+                auto& value = z(c, row, column);
+                value = (value - from.mean[c]) * scale + to.mean[c];
+            }
+        }
     }
 }
 

@@ -2,15 +2,17 @@
 // LayerNorm (Ba et al. 2016) of feature maps whose channels lie side by side.
 #pragma once
 
-#include <genrender/core/vector_lanes.hpp>
 #include <genrender/core/strided_view.hpp>
-#include <genrender/reference/activation.hpp>
+#include <genrender/core/vectors.hpp>
 #include <genrender/reference/weights.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
+
+#define GENRENDER_KERNELS <genrender/reference/layer_norm.inl>
+#include <genrender/core/each_target.inl>
 
 namespace genrender::reference {
 
@@ -23,8 +25,8 @@ public:
         : channels_(channels), epsilon_(epsilon), weight_(source.take(name + ".weight", {channels})),
           bias_(source.take(name + ".bias", {channels})) {
         // A register may read beyond the last channel.
-        weight_.resize(channels + genrender::detail::lane_count<Real>);
-        bias_.resize(channels + genrender::detail::lane_count<Real>);
+        weight_.resize(channels + genrender::detail::most_lanes<Real>);
+        bias_.resize(channels + genrender::detail::most_lanes<Real>);
     }
 
     /// Writes the result [tokens, channels]; rows of both are contiguous, `out` may be `in`. Throws shape_error if they
@@ -33,45 +35,10 @@ public:
         auto const channels = channels_;
         require_shape("layer_norm", "in", in, {in.extent(0), channels});
         require_shape("layer_norm", "out", out, in.extents());
-        for (std::size_t token = 0; token < in.extent(0); ++token) {
-            auto const* const x = in[token].data();
-            auto const mean = sum_of(x, channels, [](auto value) GENRENDER_ALWAYS_INLINE { return value; }) /
-                              static_cast<Real>(channels);
-            auto const squares = sum_of(x, channels, [&](auto value) GENRENDER_ALWAYS_INLINE {
-                auto const rest = value - mean;
-                return rest * rest;
-            });
-            auto const factor = 1 / std::sqrt(squares / static_cast<Real>(channels) + epsilon_);
-            internal::each_register(
-                out[token].data(), x, channels, [&](std::size_t c, auto value) GENRENDER_ALWAYS_INLINE {
-                    return (value - mean) * factor * genrender::detail::load(weight_.data() + c) + genrender::detail::load(bias_.data() + c);
-                });
-        }
+        GENRENDER_KERNEL(internal, normalize_tokens<Real>)(out, in, weight_.data(), bias_.data(), epsilon_);
     }
 
 private:
-    /// The sum of f(value): one sum a lane, then over the lanes, then over the values that fill no register.
-    template <class Function>
-    static Real sum_of(Real const* values, std::size_t count, Function const& f) {
-        constexpr auto n = genrender::detail::lane_count<Real>;
-        genrender::detail::lanes<Real> sums{};
-        std::size_t i = 0;
-        for (; i + n <= count; i += n) {
-            sums += f(genrender::detail::load(values + i));
-        }
-        Real parts[n];
-        genrender::detail::store(parts, sums);
-        for (auto half = n / 2; half > 0; half /= 2) {
-            for (std::size_t lane = 0; lane < half; ++lane) {
-                parts[lane] += parts[lane + half];
-            }
-        }
-        for (; i < count; ++i) {
-            parts[0] += f(values[i]);
-        }
-        return parts[0];
-    }
-
     std::size_t channels_;
     Real epsilon_;
     std::vector<Real> weight_;

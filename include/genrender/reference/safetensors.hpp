@@ -4,7 +4,7 @@
 
 #include <genrender/core/error.hpp>
 #include <genrender/reference/checked_json.hpp>
-#include <genrender/reference/half_precision.hpp>
+#include <genrender/core/half_precision.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 // Classifier-free guidance (Ho and Salimans 2022, eq. 6): from the unconditional estimate past the conditional one.
 #pragma once
 
-#include <genrender/core/elementwise.hpp>
+#include <genrender/core/linear_combination.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -26,9 +26,7 @@ void guide(strided_view<Real, 4> out, in_view<Real, 4> x0_uncond, in_view<Real, 
     require_shape("guide", "x0_uncond", x0_uncond, out.extents());
     require_shape("guide", "x0_cond", x0_cond, out.extents());
     require_value(std::isfinite(scale), "guide", "scale", scale, "a finite number");
-    for_each_element(
-        out, [scale](auto const& uncond, auto const& cond) { return uncond + scale * (cond - uncond); }, x0_uncond,
-        x0_cond);
+    linear_combination<Real, 4, 2>(out, {1 - scale, scale}, {x0_uncond, x0_cond});
 }
 
 } // namespace genrender

@@ -20,10 +20,8 @@ void take_extrapolated_step(Latents& z, Latents const& x0, Latents const& x0_las
                             Real sigma_next) {
     if constexpr (contiguous_latents<Latents, Real>) {
         auto const kept = sigma_next / sigma;
-        auto const formula = [kept, added = 1 - kept, further](auto const& now, auto const& clean, auto const& last) {
-            return kept * now + added * (clean + further * (clean - last));
-        };
-        if (write_elements(z, formula, z, x0, x0_last)) {
+        auto const added = 1 - kept;
+        if (combine_latents<Real>(z, {kept, added * (1 + further), -added * further}, z, x0, x0_last)) {
             return;
         }
     }

@@ -2,9 +2,10 @@
 // [EDM alg. 1] Euler's method: one evaluation a step, first order. Without its lines 6 to 8, which make it Heun's.
 #pragma once
 
-#include <genrender/core/elementwise.hpp>
+#include <genrender/core/linear_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <utility>
@@ -30,14 +31,15 @@ concept contiguous_latents = requires(Latents& z, Latents const& x0) {
     { to_view(z).is_contiguous() } -> std::same_as<bool>;
 };
 
-/// out = formula(in...) element by element, where all are blocks of as many elements; elsewhere false and nothing done.
-template <class Latents, class Formula, class... In>
-bool write_elements(Latents& out, Formula const& formula, In const&... in) {
+/// out = sum of factors times `in`, where all are blocks of as many elements; elsewhere false and nothing done.
+template <class Real, class Latents, class... In>
+bool combine_latents(Latents& out, std::array<Real, sizeof...(In)> const& factors, In const&... in) {
     auto const view = to_view(out);
     if (!view.is_contiguous() || !((to_view(in).is_contiguous() && to_view(in).size() == view.size()) && ...)) {
         return false;
     }
-    for_each_element(view.data(), view.size(), formula, to_view(in).data()...);
+    linear_combination(view.data(), view.size(), factors,
+                       std::array<Real const*, sizeof...(In)>{to_view(in).data()...});
     return true;
 }
 
@@ -46,10 +48,7 @@ template <class Latents, std::floating_point Real>
 void write_euler_step(Latents& out, Latents const& z, Latents const& x0, Real sigma, Real sigma_next) {
     if constexpr (contiguous_latents<Latents, Real>) {
         auto const kept = sigma_next / sigma;
-        auto const formula = [kept, added = 1 - kept](auto const& now, auto const& clean) {
-            return kept * now + added * clean;
-        };
-        if (write_elements(out, formula, z, x0)) {
+        if (combine_latents<Real>(out, {kept, 1 - kept}, z, x0)) {
             return;
         }
     }

@@ -19,11 +19,9 @@ void take_mean_step(Latents& z, Latents const& x0, Latents const& z_euler, Laten
                     Real sigma_next) {
     auto const half = (sigma_next - sigma) / 2;
     if constexpr (contiguous_latents<Latents, Real>) {
-        auto const formula = [half, here = 1 / sigma, there = 1 / sigma_next](
-                                 auto const& now, auto const& clean, auto const& next, auto const& clean_next) {
-            return now + half * (here * (now - clean) + there * (next - clean_next));
-        };
-        if (write_elements(z, formula, z, x0, z_euler, x0_next)) {
+        auto const here = half / sigma;
+        auto const there = half / sigma_next;
+        if (combine_latents<Real>(z, {1 + here, -here, there, -there}, z, x0, z_euler, x0_next)) {
             return;
         }
     }

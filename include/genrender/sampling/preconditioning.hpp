@@ -2,7 +2,7 @@
 // [EDM eq. 7] From what a raw network predicts to the clean estimate D(z, sigma) = c_skip z + c_out F(c_in z, t).
 #pragma once
 
-#include <genrender/core/elementwise.hpp>
+#include <genrender/core/linear_combination.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -82,10 +82,7 @@ void to_clean(strided_view<Real, 4> out, prediction predicted, in_view<Real, 4> 
     require_shape("to_clean", "z", z, out.extents());
     require_shape("to_clean", "F", F, out.extents());
     auto const factors = scalings_of(predicted, sigma);
-    for_each_element(
-        out,
-        [&factors](auto const& noisy, auto const& output) { return factors.c_skip * noisy + factors.c_out * output; },
-        z, F);
+    linear_combination<Real, 4, 2>(out, {factors.c_skip, factors.c_out}, {z, F});
 }
 
 } // namespace genrender

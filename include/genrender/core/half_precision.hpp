@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// [IEEE 754-2019 sec. 3.6] The 16-bit storage formats of weights, to and from float.
+// [IEEE 754-2019 sec. 3.6] The 16-bit storage formats of weights and features, to and from float.
 #pragma once
 
 #include <bit>
 #include <cstdint>
 
-namespace genrender::reference {
+namespace genrender {
 
 /// The value of the binary16 number with these bits: exact; subnormal numbers, infinities and NaN included.
 constexpr float float_of_half(std::uint16_t bits) {
@@ -47,4 +47,4 @@ constexpr std::uint16_t half_of_float(float value) {
     return static_cast<std::uint16_t>(sign | (rounded >> 13));
 }
 
-} // namespace genrender::reference
+} // namespace genrender

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of the 16-bit storage formats.
-#include <genrender/reference/half_precision.hpp>
+#include <genrender/core/half_precision.hpp>
 
 #include <doctest/doctest.h>
 
@@ -11,9 +11,7 @@
 
 using namespace genrender;
 
-using namespace genrender::reference;
-
-TEST_SUITE("reference/half_precision") {
+TEST_SUITE("core/half_precision") {
     TEST_CASE("worked examples") {
         CHECK(float_of_half(0x3C00) == 1.0f);
         CHECK(float_of_half(0xC000) == -2.0f);
