@@ -4,6 +4,8 @@
 
 #include <benchmarks/support/machine.hpp>
 
+#include <genrender/core/vector_target.hpp>
+
 #include <fstream>
 #include <set>
 #include <string>
@@ -31,6 +33,10 @@ inline machine this_machine(results const& all, std::string flags, std::vector<s
     on.memory_bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     on.compiler = compiler;
     on.flags = std::move(flags);
+    on.vector_target = name_of(chosen_vector_target());
+    for (auto const target : available_vector_targets()) {
+        on.vector_targets.emplace_back(name_of(target));
+    }
     on.libraries = std::move(libraries);
     std::set<std::string> peers;
     for (auto const& time : all.peers) {
