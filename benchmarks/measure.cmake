@@ -36,16 +36,16 @@ while(i LESS CMAKE_ARGC)
     endif()
 endwhile()
 
-set(results ${OUT}/results)
-file(REMOVE_RECURSE ${results})
-file(MAKE_DIRECTORY ${results}/peers ${results}/networks ${results}/before)
-
-# Kept, as it may be the very file that this run writes.
+# Kept, as it may be the very file that this run writes; what is no run is refused before anything is measured.
 if(NOT compare STREQUAL "")
     cmake_path(ABSOLUTE_PATH compare)
     execute_process(COMMAND ${COMPARISON} ${compare} ${compare} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-    file(COPY_FILE ${compare} ${results}/before/benchmarks.json)
+    file(COPY_FILE ${compare} ${OUT}/before.json)
 endif()
+
+set(results ${OUT}/results)
+file(REMOVE_RECURSE ${results})
+file(MAKE_DIRECTORY ${results}/peers ${results}/networks)
 
 # Where networks leave their weights for peers.
 set(ENV{GENRENDER_NETWORK_FOLDER} ${results}/networks)
@@ -124,7 +124,7 @@ execute_process(COMMAND ${TABLE} ${results} --targets ${CMAKE_CURRENT_LIST_DIR}/
     RESULT_VARIABLE table_code)
 if(NOT compare STREQUAL "")
     say("beside ${compare}")
-    execute_process(COMMAND ${COMPARISON} ${results}/before/benchmarks.json ${OUT}/benchmarks.json COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND ${COMPARISON} ${OUT}/before.json ${OUT}/benchmarks.json COMMAND_ERROR_IS_FATAL ANY)
 endif()
 if(NOT table_code EQUAL 0)
     message(FATAL_ERROR "bench: a row failed, or there is no table")
