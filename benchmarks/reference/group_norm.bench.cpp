@@ -59,7 +59,7 @@ void group_norm_silu_of_numbers(benchmark::State& state) {
             benchmark::DoNotOptimize(sums);
             for (std::size_t y = 0; y < made.grid().height; ++y) {
                 internal::each_register(made.row(y), in.data() + y * row, row,
-                                      [](std::size_t, auto x) { return internal::silu_of<float>(x); });
+                                        [](std::size_t, auto x) { return internal::silu_of<float>(x); });
             }
         });
 }

@@ -21,8 +21,7 @@ struct gaussian_denoiser {
 
     // Compiled once: where it is inlined, targets with fused multiply-adds may round it in more than one way.
     template <class Real>
-    [[gnu::noinline]]
-    Real operator()(Real z, Real sigma) const {
+    [[gnu::noinline]] Real operator()(Real z, Real sigma) const {
         auto const variance = static_cast<Real>(s * s);
         return (variance * z + sigma * sigma * static_cast<Real>(mu)) / (variance + sigma * sigma);
     }

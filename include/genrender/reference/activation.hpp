@@ -85,7 +85,7 @@ GENRENDER_ALWAYS_INLINE inline lanes<Real> gelu_of(std::type_identity_t<lanes<Re
 template <class Real>
 void silu(std::span<Real> values) {
     internal::each_register(values.data(), values.data(), values.size(),
-                          [](std::size_t, auto x) GENRENDER_ALWAYS_INLINE { return internal::silu_of<Real>(x); });
+                            [](std::size_t, auto x) GENRENDER_ALWAYS_INLINE { return internal::silu_of<Real>(x); });
 }
 
 /// Replaces every a by a b Phi(b), b being the element of `gates` in its place, with Phi the distribution function of
@@ -101,9 +101,9 @@ void gate_by_gelu(std::span<Real> values, std::type_identity_t<std::span<Real co
         return;
     }
     internal::each_register(values.data(), values.data(), values.size(),
-                          [&](std::size_t i, auto a) GENRENDER_ALWAYS_INLINE {
-                              return a * internal::gelu_of<Real>(genrender::detail::load(gates.data() + i));
-                          });
+                            [&](std::size_t i, auto a) GENRENDER_ALWAYS_INLINE {
+                                return a * internal::gelu_of<Real>(genrender::detail::load(gates.data() + i));
+                            });
 }
 
 /// x Phi(x).

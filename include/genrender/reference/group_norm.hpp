@@ -105,7 +105,8 @@ private:
     static void apply(Real* to, Real const* from, line_by_channel const& line, Function const& then) {
         auto const channels = line.scale.size() - padding;
         internal::each_register(to, from, channels, [&](std::size_t c, auto x) GENRENDER_ALWAYS_INLINE {
-            return then(x * genrender::detail::load(line.scale.data() + c) + genrender::detail::load(line.shift.data() + c));
+            return then(x * genrender::detail::load(line.scale.data() + c) +
+                        genrender::detail::load(line.shift.data() + c));
         });
     }
 

@@ -42,10 +42,11 @@ public:
                 return rest * rest;
             });
             auto const factor = 1 / std::sqrt(squares / static_cast<Real>(channels) + epsilon_);
-            internal::each_register(
-                out[token].data(), x, channels, [&](std::size_t c, auto value) GENRENDER_ALWAYS_INLINE {
-                    return (value - mean) * factor * genrender::detail::load(weight_.data() + c) + genrender::detail::load(bias_.data() + c);
-                });
+            internal::each_register(out[token].data(), x, channels,
+                                    [&](std::size_t c, auto value) GENRENDER_ALWAYS_INLINE {
+                                        return (value - mean) * factor * genrender::detail::load(weight_.data() + c) +
+                                               genrender::detail::load(bias_.data() + c);
+                                    });
         }
     }
 

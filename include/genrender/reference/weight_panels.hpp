@@ -144,7 +144,8 @@ private:
         for (std::size_t run = 0; run < in.runs; ++run) {
             for (std::size_t i = 0; i < in.run_length; ++i, weights += Width * lane) {
                 vector weight[Width];
-                unrolled<Width>([&](auto w) GENRENDER_ALWAYS_INLINE { weight[w] = genrender::detail::load(weights + w * lane); });
+                unrolled<Width>(
+                    [&](auto w) GENRENDER_ALWAYS_INLINE { weight[w] = genrender::detail::load(weights + w * lane); });
                 unrolled<Rows>([&](auto r) GENRENDER_ALWAYS_INLINE {
                     auto const x = genrender::detail::spread(at[r][i]);
                     unrolled<Width>([&](auto w) GENRENDER_ALWAYS_INLINE { sum[r][w] += x * weight[w]; });
@@ -160,12 +161,14 @@ private:
                 terms.residual.data() == nullptr ? nullptr : terms.residual[token + r].data() + first;
             if (count == Width * lane) {
                 unrolled<Width>([&](auto w) GENRENDER_ALWAYS_INLINE {
-                    genrender::detail::store(to + w * lane,
-                                  residual == nullptr ? sum[r][w] : sum[r][w] + genrender::detail::load(residual + w * lane));
+                    genrender::detail::store(
+                        to + w * lane,
+                        residual == nullptr ? sum[r][w] : sum[r][w] + genrender::detail::load(residual + w * lane));
                 });
             } else {
                 Real part[Width * lane];
-                unrolled<Width>([&](auto w) GENRENDER_ALWAYS_INLINE { genrender::detail::store(part + w * lane, sum[r][w]); });
+                unrolled<Width>([&](auto w)
+                                    GENRENDER_ALWAYS_INLINE { genrender::detail::store(part + w * lane, sum[r][w]); });
                 for (std::size_t o = 0; o < count; ++o) {
                     to[o] = residual == nullptr ? part[o] : part[o] + residual[o];
                 }
