@@ -49,6 +49,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     core/vector_unit.hpp
     core/vectors.hpp
     core/vectors.inl
+    core/widening.inl
     guidance/background_mask.hpp
     guidance/canonical_maps.hpp
     guidance/cell_extents.hpp
