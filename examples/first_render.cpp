@@ -21,11 +21,10 @@ genrender::latents<float> stylise(Phi const& your_network, genrender::uv_maps co
     settings.noise.seed = 7;
 
     genrender::render_report report;
-    auto const z =
-        genrender::render(your_network, to_uv_view(UV), settings, report, [](genrender::progress const& now) {
-            std::cerr << "step " << now.step + 1 << ", " << now.remaining_seconds << " s left\r";
-            return true; // false ends the run
-        });
+    auto z = genrender::render(your_network, to_uv_view(UV), settings, report, [](genrender::progress const& now) {
+        std::cerr << "step " << now.step + 1 << ", " << now.remaining_seconds << " s left\r";
+        return true; // false ends the run
+    });
     for (auto const& [grid, coverage] : report.coverage()) {
         std::cout << grid.height << "x" << grid.width << ": keyframes cover " << 100 * coverage.share() << " %\n";
     }

@@ -63,7 +63,7 @@ void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::sp
 template <class Real>
 std::size_t queries_of_run(std::size_t tokens, std::size_t head_size) {
     using full = query_tile<Real, tile_registers>;
-    constexpr std::size_t cached_bytes = 640 * 1024;
+    constexpr std::size_t cached_bytes = std::size_t{640} * 1024;
     constexpr std::size_t most_queries = 1024;
     auto const fitting = cached_bytes / (full::size(head_size) * sizeof(Real));
     auto const most = std::clamp<std::size_t>(fitting, 1, most_queries / full::queries);

@@ -60,7 +60,7 @@ private:
             known->asked = asked_;
             return known->place;
         }
-        auto const place = std::make_shared<place_type>();
+        auto place = std::make_shared<place_type>();
         if (entries_.size() < most_) {
             entries_.push_back({frame, asked_, place});
         } else {

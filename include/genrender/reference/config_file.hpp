@@ -106,7 +106,7 @@ public:
         if (is_absent(option) || !(*this)[option].is_array()) {
             return std::vector<std::size_t>(levels, count(option, absent));
         }
-        auto const values = counts(option, {});
+        auto values = counts(option, {});
         require(values.size() == levels, option, "one number or " + std::to_string(levels));
         return values;
     }
