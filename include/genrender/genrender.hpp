@@ -8,6 +8,7 @@
 #endif
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/half_precision.hpp>
 #include <genrender/core/half_storage.hpp>
 #include <genrender/core/index.hpp>

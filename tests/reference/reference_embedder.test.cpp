@@ -105,7 +105,8 @@ TEST_SUITE("reference/reference_embedder") {
         auto const embedder = reference_embedder<Real>::from_folder(folder.path());
         CHECK(embedder.words() == three_words);
         auto const bound = sizeof(Real) == 8 ? 1e-12 : 2e-6;
-        CHECK(greatest_difference(embedder.embed_image(golden_image<Real>().view()), golden_vector("image_vector")) < bound);
+        CHECK(greatest_difference(embedder.embed_image(golden_image<Real>().view()), golden_vector("image_vector")) <
+              bound);
         CHECK(greatest_difference(embedder.embed_text("red, STRIPES"), golden_vector("text_vector")) < bound);
     }
 

@@ -33,9 +33,7 @@ struct plain_attention {
     /// Says what a call lacks that is none.
     template <class Call>
         requires(!attention_call<Call>)
-    auto operator()(Call&) const {
-        require_attention_call<Call>();
-    }
+    auto operator()(Call&) const { require_attention_call<Call>(); }
 
     /// Everywhere.
     bool is_plain_at(attention_place) const { return true; }

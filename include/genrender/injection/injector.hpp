@@ -71,9 +71,7 @@ public:
     /// Says what a call lacks that is none.
     template <class Call>
         requires(!attention_call<Call>)
-    auto operator()(Call&) const {
-        require_attention_call<Call>();
-    }
+    auto operator()(Call&) const { require_attention_call<Call>(); }
 
     /// Where the bank holds nothing.
     bool is_plain_at(attention_place place) const { return bank_->find(place) == nullptr; }

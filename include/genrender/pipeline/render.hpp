@@ -3,12 +3,12 @@
 // denoiser.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/guidance/background_mask.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -52,7 +52,7 @@ void require_finite_coordinates(Maps const& UV) {
                     continue;
                 }
                 for (auto const coordinate : UV.point_at({frame}, {row, column})) {
-                    if (!std::isfinite(coordinate)) {
+                    if (!is_finite(coordinate)) {
                         throw value_error("render: UV of frame " + std::to_string(frame) + " at row " +
                                           std::to_string(row) + " column " + std::to_string(column) + " is " +
                                           std::to_string(coordinate) + ", expected finite texture coordinates");
@@ -120,7 +120,7 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
             }
             for (std::size_t step = 0; step < settings.steps; ++step) {
                 auto const alpha = settings.alpha(step, site);
-                require_value(std::isfinite(alpha), "render", "settings.alpha", alpha, "finite numbers");
+                require_value(is_finite(alpha), "render", "settings.alpha", alpha, "finite numbers");
             }
             maps.add(site.grid, make_map);
         }
