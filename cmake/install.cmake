@@ -6,17 +6,6 @@ include(CMakePackageConfigHelpers)
 set(genrender_config_dir ${CMAKE_INSTALL_DATADIR}/cmake/genrender)
 set(genrender_pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 
-install(TARGETS genrender EXPORT genrender_targets FILE_SET HEADERS)
-install(EXPORT genrender_targets NAMESPACE genrender:: FILE genrenderTargets.cmake DESTINATION ${genrender_config_dir})
-
-configure_package_config_file(cmake/genrenderConfig.cmake.in genrenderConfig.cmake
-    INSTALL_DESTINATION ${genrender_config_dir})
-write_basic_package_version_file(genrenderConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
-install(FILES
-    ${CMAKE_CURRENT_BINARY_DIR}/genrenderConfig.cmake
-    ${CMAKE_CURRENT_BINARY_DIR}/genrenderConfigVersion.cmake
-    DESTINATION ${genrender_config_dir})
-
 # pkg-config finds the prefix from where its file lies, unless somebody chose absolute install folders.
 if(IS_ABSOLUTE "${CMAKE_INSTALL_INCLUDEDIR}" OR IS_ABSOLUTE "${CMAKE_INSTALL_DATADIR}")
     set(genrender_pc_includedir ${CMAKE_INSTALL_FULL_INCLUDEDIR})
@@ -25,5 +14,51 @@ else()
         /prefix/${genrender_pkgconfig_dir} /prefix/${CMAKE_INSTALL_INCLUDEDIR})
     set(genrender_pc_includedir "\${pcfiledir}/${genrender_pc_includedir}")
 endif()
-configure_file(cmake/genrender.pc.in genrender.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/genrender.pc DESTINATION ${genrender_pkgconfig_dir})
+
+# A file of targets and one for pkg-config a component; the config file gets the packages of all.
+set(genrender_config_lists "set(genrender_components ${genrender_defined})\n")
+foreach(component IN LISTS genrender_defined)
+    set(target genrender)
+    set(genrender_pc_name genrender)
+    set(genrender_pc_part "")
+    set(requirements "")
+    set(genrender_pc_libs "")
+    if(NOT component STREQUAL "core")
+        set(target genrender_${component})
+        set(genrender_pc_name genrender-${component})
+        set(genrender_pc_part " (${component})")
+        set(requirements "genrender = ${PROJECT_VERSION}")
+    endif()
+    string(APPEND genrender_config_lists "set(genrender_${component}_PACKAGES ${genrender_${component}_PACKAGES})\n")
+    foreach(package IN LISTS genrender_${component}_PACKAGES)
+        set(least ${genrender_${package}_LEAST})
+        set(mode CONFIG)
+        if(genrender_${package}_MODULE)
+            set(mode MODULE)
+        endif()
+        string(APPEND genrender_config_lists
+            "set(genrender_${package}_MODE ${mode})\nset(genrender_${package}_LEAST ${least})\n")
+        if(genrender_${package}_PKG_CONFIG AND least)
+            list(APPEND requirements "${genrender_${package}_PKG_CONFIG} >= ${least}")
+        elseif(genrender_${package}_PKG_CONFIG)
+            list(APPEND requirements ${genrender_${package}_PKG_CONFIG})
+        endif()
+        list(APPEND genrender_pc_libs ${genrender_${package}_LIBS})
+    endforeach()
+    list(JOIN requirements ", " genrender_pc_requires)
+    list(JOIN genrender_pc_libs " " genrender_pc_libs)
+
+    install(TARGETS ${target} EXPORT ${target}_targets FILE_SET HEADERS)
+    install(EXPORT ${target}_targets NAMESPACE genrender:: FILE genrender_${component}.cmake
+        DESTINATION ${genrender_config_dir})
+    configure_file(cmake/component.pc.in ${genrender_pc_name}.pc @ONLY)
+    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${genrender_pc_name}.pc DESTINATION ${genrender_pkgconfig_dir})
+endforeach()
+
+configure_package_config_file(cmake/genrenderConfig.cmake.in genrenderConfig.cmake
+    INSTALL_DESTINATION ${genrender_config_dir} NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+write_basic_package_version_file(genrenderConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+install(FILES
+    ${CMAKE_CURRENT_BINARY_DIR}/genrenderConfig.cmake
+    ${CMAKE_CURRENT_BINARY_DIR}/genrenderConfigVersion.cmake
+    DESTINATION ${genrender_config_dir})

@@ -119,14 +119,14 @@ std::string advice(recommendation const& one) {
     case recommendation_kind::tiled:
     case recommendation_kind::degenerate:
     case recommendation_kind::many_seams:
-        return one.sentence() + " (--canonical position)";
+        return sentence_of(one) + " (--canonical position)";
     case recommendation_kind::texture_too_fine:
     case recommendation_kind::texture_too_coarse:
-        return one.sentence() + " (--correspondence footprint)";
+        return sentence_of(one) + " (--correspondence footprint)";
     case recommendation_kind::low_coverage:
-        return one.sentence() + " (--keyframes)";
+        return sentence_of(one) + " (--keyframes)";
     default:
-        return one.sentence();
+        return sentence_of(one);
     }
 }
 

@@ -4,10 +4,10 @@
 
 #include "output_file.hpp"
 #include "resident_memory.hpp"
+#include "text_table.hpp"
 
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/inspection/preflight_text.hpp>
 #include <genrender/pipeline/memory_plan.hpp>
 
 #include <nlohmann/json.hpp>
@@ -100,25 +100,24 @@ inline nlohmann::ordered_json plan_json(timed_plan const& timed) {
 
 /// The plan as tables.
 inline std::string plan_text(timed_plan const& timed) {
-    using genrender::detail::fixed;
     std::vector<std::vector<std::string>> memory{{"memory", "MB"}};
     for (auto [name, bytes] : detail::named_bytes(timed.plan.bytes)) {
         std::replace(name.begin(), name.end(), '_', ' ');
         name += name == "maps" ? " (held already)" : name == "peak" ? " (beyond the maps)" : "";
-        memory.push_back({name, fixed(static_cast<double>(bytes) / 1e6, 2)});
+        memory.push_back({name, fixed_text(static_cast<double>(bytes) / 1e6, 2)});
     }
     auto const& work = timed.plan.work;
     auto const seconds = timed.seconds_per_frame * static_cast<double>(work.denoised_frames);
     return table_text(memory) +
            table_text({{"work", ""},
                        {"frames to denoise", std::to_string(work.denoised_frames)},
-                       {"attention, GFLOP", fixed(work.attention_flops / 1e9, 2)},
-                       {"of denoising frame by frame, times", fixed(work.attention_ratio(), 2)},
-                       {"projections of the network, GFLOP", fixed(work.projection_flops / 1e9, 2)},
-                       {"features mixed, GB", fixed(work.mixed_bytes / 1e9, 3)},
-                       {"noise, million values", fixed(work.noise_values / 1e6, 2)},
-                       {"latents normalised, GB", fixed(work.normalized_bytes / 1e9, 3)},
-                       {"denoiser on one thread, s, about", fixed(seconds, 1)}});
+                       {"attention, GFLOP", fixed_text(work.attention_flops / 1e9, 2)},
+                       {"of denoising frame by frame, times", fixed_text(work.attention_ratio(), 2)},
+                       {"projections of the network, GFLOP", fixed_text(work.projection_flops / 1e9, 2)},
+                       {"features mixed, GB", fixed_text(work.mixed_bytes / 1e9, 3)},
+                       {"noise, million values", fixed_text(work.noise_values / 1e6, 2)},
+                       {"latents normalised, GB", fixed_text(work.normalized_bytes / 1e9, 3)},
+                       {"denoiser on one thread, s, about", fixed_text(seconds, 1)}});
 }
 
 /// Writes plan.txt and plan.json into `folder`. Throws file_error if a file cannot be written.

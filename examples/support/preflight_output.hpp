@@ -5,8 +5,9 @@
 #include "output_file.hpp"
 #include "pictures.hpp"
 #include "preflight_picture.hpp"
+#include "preflight_text.hpp"
 
-#include <genrender/inspection/preflight_text.hpp>
+#include <genrender/inspection/preflight.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -108,7 +109,7 @@ nlohmann::ordered_json preflight_json(preflight_report const& report, Advice con
 }
 
 /// Looks at maps before a run and writes preflight.txt, preflight.json and preflight.png into `folder`. `advice` is
-/// what stands for a recommendation in text and JSON: its own sentence, or the program's. Throws file_error if a file
+/// what stands for a recommendation in text and JSON: its sentence, or the program's. Throws file_error if a file
 /// cannot be written.
 template <canonical_maps Maps, class Real, parallel_loop Loop, class Advice>
 preflight_report write_preflight(std::filesystem::path const& folder, Maps const& maps,
@@ -121,13 +122,12 @@ preflight_report write_preflight(std::filesystem::path const& folder, Maps const
     return report;
 }
 
-/// The same with the library's own sentences.
+/// The same with the sentences alone.
 template <canonical_maps Maps, class Real, parallel_loop Loop>
 preflight_report write_preflight(std::filesystem::path const& folder, Maps const& maps,
                                  std::vector<grid_extents> const& grids, render_settings<Real> const& settings,
                                  Loop const& loop) {
-    return write_preflight(folder, maps, grids, settings, loop,
-                           [](recommendation const& one) { return one.sentence(); });
+    return write_preflight(folder, maps, grids, settings, loop, sentence_of);
 }
 
 } // namespace genrender::examples

@@ -4,11 +4,12 @@
 
 #include "contact_sheet.hpp"
 #include "pictures.hpp"
+#include "preflight_text.hpp"
 
 #include <genrender/inspection/pixel_check.hpp>
 #include <genrender/inspection/screen_search.hpp>
 #include <genrender/inspection/finite_maps.hpp>
-#include <genrender/inspection/preflight_text.hpp>
+#include <genrender/inspection/preflight.hpp>
 
 #include <algorithm>
 #include <array>
@@ -248,8 +249,7 @@ rgb8_image preflight_picture(Maps const& maps, preflight_report const& report) {
         labels.insert(
             labels.end(),
             {name + ": coordinates", name + ": defects",
-             name + ": tokens" +
-                 (report.grids.empty() ? "" : " " + genrender::detail::extents_name(report.grids.front().grid))});
+             name + ": tokens" + (report.grids.empty() ? "" : " " + detail::extents_name(report.grids.front().grid))});
     }
     return detail::with_legend(contact_sheet(
         images, {.columns = 3, .margin = 4, .enlargement = pictures.enlargement(), .labels = std::move(labels)}));

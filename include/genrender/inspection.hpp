@@ -12,7 +12,6 @@
 #include <genrender/inspection/pixel_check.hpp>
 #include <genrender/inspection/pixel_lattice.hpp>
 #include <genrender/inspection/preflight.hpp>
-#include <genrender/inspection/preflight_text.hpp>
 #include <genrender/inspection/recommendation.hpp>
 #include <genrender/inspection/screen_search.hpp>
 #include <genrender/inspection/texture_tiles.hpp>

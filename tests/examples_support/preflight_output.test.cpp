@@ -56,7 +56,7 @@ TEST_SUITE("examples_support/preflight_output") {
         });
         auto const report = write_preflight(
             folder / "out", to_uv_view(maps), {{16, 16}, {7, 7}}, render_settings<float>{}, sequential_loop{},
-            [](recommendation const& one) { return one.sentence() + " (with an option)"; });
+            [](recommendation const& one) { return sentence_of(one) + " (with an option)"; });
         CHECK_FALSE(report.allows_run());
         CHECK(contents(folder / "out/preflight.txt").find("with an option") != std::string::npos);
         auto const json = nlohmann::json::parse(contents(folder / "out/preflight.json"));

@@ -3,7 +3,7 @@
 # Run: cmake -D ROOT=<repository> -D COPY=<scratch folder> -P mutations.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# The copy is a small healthy house: one header, its test, one example and a README that quotes it.
+# The copy is a small healthy house: a few headers of three components, their tests, one example and a README that quotes it.
 set(file_head "// SPDX-License-Identifier: MIT\n// [GR eq. 4] A header.\n")
 set(header "${file_head}#pragma once\n#include <genrender/core/index.hpp>\n")
 set(test "// SPDX-License-Identifier: MIT\n// Its test.\n#include <genrender/blending/thing.hpp>\n\
@@ -16,23 +16,40 @@ endforeach()
 string(REPLACE "[GR eq. 4]" "[GR eq. 1, GR eq. 2, GR eq. 3, GR eq. 4, GR eq. 5, GR eq. 6, GR alg. 1]" header "${header}")
 string(APPEND readme "\n```cpp\nauto a = b[0];\n```\n")
 string(APPEND test "}\n")
+# The macros of the repository's own list of components, for the small one of this house.
+file(READ ${ROOT}/cmake/components.cmake macros)
+string(REGEX REPLACE "\ngenrender_package.*" "" macros "${macros}")
 
 function(write_house)
     file(REMOVE_RECURSE ${COPY})
-    file(WRITE ${COPY}/include/genrender/core/index.hpp "// SPDX-License-Identifier: MIT\n// Indices.\n#pragma once\n")
-    file(WRITE ${COPY}/include/genrender/reference/network.hpp "// SPDX-License-Identifier: MIT\n// Network.\n#pragma once\n")
+    file(WRITE ${COPY}/include/genrender/core/index.hpp "// SPDX-License-Identifier: MIT\n// Indices.\n#pragma once\n\
+#include <vector>\n#include <fast/fast.hpp>\n")
+    file(WRITE ${COPY}/include/genrender/reference/network.hpp "// SPDX-License-Identifier: MIT\n// Network.\n#pragma once\n\
+#include <text/text.hpp>\n#include <fast/fast.hpp>\n")
+    file(WRITE ${COPY}/include/genrender/scene/mesh.hpp "// SPDX-License-Identifier: MIT\n// Mesh.\n#pragma once\n\
+#define GENRENDER_KERNELS <genrender/scene/mesh.inl>\n")
+    file(WRITE ${COPY}/include/genrender/scene/mesh.inl "// SPDX-License-Identifier: MIT\n// Its body.\n")
     file(WRITE ${COPY}/include/genrender/blending/thing.hpp "${header}")
     file(WRITE ${COPY}/include/genrender/genrender.hpp "// SPDX-License-Identifier: MIT\n// All.\n\
 #include <genrender/core/index.hpp>\n#include <genrender/blending/thing.hpp>\n")
-    file(WRITE ${COPY}/CMakeLists.txt "FILES\n    include/genrender/core/index.hpp\n    include/genrender/reference/network.hpp\n\
-    include/genrender/blending/thing.hpp)\n")
-    file(WRITE ${COPY}/tests/CMakeLists.txt
-        "genrender_test_room(core index)\ngenrender_test_room(models network)\ngenrender_test_room(blending\n    thing)\n")
+    file(WRITE ${COPY}/include/genrender/scene.hpp "// SPDX-License-Identifier: MIT\n// Scene.\n\
+#include <genrender/scene/mesh.hpp>\n")
+    file(WRITE ${COPY}/include/genrender/reference.hpp "// SPDX-License-Identifier: MIT\n// Reference.\n\
+#include <genrender/reference/network.hpp>\n")
+    file(WRITE ${COPY}/cmake/components.cmake "${macros}
+genrender_package(fast TARGET fast::fast INCLUDES \"fast/\")
+genrender_package(text TARGET text::text INCLUDES \"text/\")
+genrender_component(core PACKAGES fast HEADERS genrender.hpp core/index.hpp blending/thing.hpp)
+genrender_component(scene HEADERS scene.hpp scene/mesh.hpp scene/mesh.inl)
+genrender_component(reference PACKAGES text HEADERS reference.hpp reference/network.hpp)
+")
+    file(WRITE ${COPY}/tests/CMakeLists.txt "genrender_test_room(core index)\ngenrender_test_room(reference network)\n\
+genrender_test_room(scene mesh)\ngenrender_test_room(blending\n    thing)\n")
     file(WRITE ${COPY}/benchmarks/CMakeLists.txt "# Benchmarks\ngenrender_benchmark(blending thing)\n")
     file(WRITE ${COPY}/benchmarks/blending/thing.bench.cpp "// SPDX-License-Identifier: MIT\n// Its speed.\n")
     file(WRITE ${COPY}/examples/CMakeLists.txt
         "# Examples\ngenrender_example(story)\ngenrender_example_test(\"a story\" story)\n")
-    foreach(name IN ITEMS core/index models/network)
+    foreach(name IN ITEMS core/index scene/mesh reference/network)
         file(WRITE ${COPY}/tests/${name}.test.cpp "// SPDX-License-Identifier: MIT\n// Its test.\n\
 #include <genrender/${name}.hpp>\nTEST_SUITE(\"${name}\") {\n    TEST_CASE(\"holds\") {}\n}\n")
     endforeach()
@@ -77,6 +94,8 @@ write_house()
 verdict("the healthy house" nothing)
 
 set(thing include/genrender/blending/thing.hpp)
+set(network include/genrender/reference/network.hpp)
+set(components cmake/components.cmake)
 set(thing_test tests/blending/thing.test.cpp)
 mutate(${thing} "// SPDX-License-Identifier: MIT\n" "" "thing.hpp: starts with")
 mutate(${thing_test} "// Its test.\n" "" "thing.test.cpp: starts with")
@@ -85,16 +104,34 @@ string(REPEAT "\n" 300 many_lines)
 mutate(${thing} "" "${many_lines}" "blending/thing.hpp: 304 lines")
 mutate(include/genrender/attic/thing.hpp "" "${file_head}" "'attic' is no room")
 mutate(${thing} "" "#include <genrender/injection/x.hpp>\n" "includes downstream, from injection")
-mutate(${thing} "" "#include <genrender/genrender.hpp>\n" "includes the umbrella")
-mutate(include/genrender/evaluation/score.hpp "" "${file_head}#include <genrender/reference/network.hpp>\n" "includes models, which only")
+mutate(${thing} "" "#include <genrender/genrender.hpp>\n" "includes the umbrella genrender.hpp")
+mutate(${thing} "" "#include <genrender/scene/mesh.hpp>\n" "thing.hpp: includes downstream, from scene")
+mutate(${network} "" "#include <genrender/scene/mesh.hpp>\n" "network.hpp: includes scene, another component")
+mutate(${network} "" "#include <genrender/scene.hpp>\n" "network.hpp: includes the umbrella scene.hpp")
 mutate(${thing} "" "#include \"index.hpp\"\n" "includes with quotes")
 mutate(${thing} "" "#include <xtensor/xsort.hpp>\n" "only core/tensor.hpp may")
 mutate(${thing} "" "#include <Eigen/Core>\n" "only core/linalg.hpp may")
 mutate(${thing} "" "#include <thread>\n" "only core/parallel.hpp may")
 mutate(${thing} "" "#include <random>\n" "only nothing may")
-mutate(CMakeLists.txt "blending/thing.hpp" "blending/other.hpp" "thing.hpp: is not in the header set")
-mutate(include/genrender/genrender.hpp "blending/thing.hpp" "blending/other.hpp" "thing.hpp: is not in the umbrella")
-mutate(include/genrender/genrender.hpp "" "#include <genrender/reference/network.hpp>\n" "network.hpp: is in the umbrella")
+mutate(${components} " blending/thing.hpp" "" "thing.hpp: is not among the headers of core")
+mutate(${components} "scene/mesh.hpp " "" "mesh.hpp: is not among the headers of scene")
+mutate(${components} " scene/mesh.inl" "" "mesh.inl: is not among the headers of scene")
+mutate(${components} "genrender.hpp " "" "genrender.hpp: is not among the headers of core")
+mutate(${components} "HEADERS scene.hpp scene/mesh.hpp scene/mesh.inl" "" "scene.hpp: is not among the headers of scene")
+mutate(include/genrender/scene/mesh.inl "// Its body.\n" "" "mesh.inl: starts with")
+mutate(include/genrender/scene/mesh.inl "" "${many_lines}" "mesh.inl: 302 lines")
+mutate(include/genrender/scene/mesh.hpp "<genrender/scene/mesh.inl>" "" "mesh.inl: is included by no header")
+mutate(include/genrender/genrender.hpp "blending/thing.hpp" "blending/other.hpp" "genrender.hpp: lacks .*blending/thing.hpp")
+mutate(include/genrender/genrender.hpp "" "#include <genrender/reference/network.hpp>\n" "network.hpp>, which is not of core")
+mutate(include/genrender/scene.hpp "" "#include <genrender/core/index.hpp>\n" "index.hpp>, which is not of scene")
+mutate(include/genrender/reference.hpp "network" "other" "reference.hpp: lacks .*reference/network.hpp")
+mutate(include/genrender/other.hpp "" "${file_head}" "'other.hpp' is no room")
+mutate(${thing} "" "#include <text/text.hpp>\n" "core: .*<text/text.hpp>, of a package that it does not declare")
+mutate(${thing} "" "#  include <slow.h>\n" "core: .*<slow.h>, of a package that it does not declare")
+mutate(include/genrender/scene/mesh.inl "" "#include <text/text.hpp>\n" "scene: .*<text/text.hpp>, of a package that it does not")
+mutate(${components} " PACKAGES text" "" "reference: .*<text/text.hpp>, of a package that it does not declare")
+mutate(${network} "#include <text/text.hpp>" "" "reference: declares text, which none of its headers includes")
+mutate(${components} "scene HEADERS" "scene PACKAGES text HEADERS" "scene: declares text, which none of its headers includes")
 mutate(include/genrender/core/error.hpp "" "${file_head}" "error.hpp: has no tests/core/error.test.cpp")
 mutate(${thing_test} "#include <" "#include <vector>\n#include <" "its first include is not")
 mutate(${thing_test} "\"blending/thing\"" "\"blending/other\"" "has no TEST_SUITE")

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The first of two translation units that include the whole library.
+#include <genrender/evaluation.hpp>
 #include <genrender/genrender.hpp>
+#include <genrender/inspection.hpp>
+#include <genrender/reference.hpp>
+#include <genrender/scene.hpp>
 
 // kernels_on_views.cpp knows these packages by their macros, which have to be theirs.
 #if !defined(XTENSOR_VERSION_MAJOR) || !defined(GLM_VERSION_MAJOR)

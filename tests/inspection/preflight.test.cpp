@@ -77,10 +77,11 @@ TEST_SUITE("inspection/preflight") {
         auto const report = flown(maps);
         CHECK_FALSE(report.allows_run());
         REQUIRE(says(report, not_finite));
-        CHECK(
-            report.recommendations[0].sentence() ==
-            "coordinates of object 0 are NaN or infinite at 2 pixels of frames 2-3, which a run refuses: mark them as "
-            "background or write them again");
+        auto const& broken = report.recommendations[0];
+        CHECK(broken.kind == not_finite);
+        CHECK(broken.figure == 2);
+        CHECK(broken.object == object_index{0});
+        CHECK(broken.frames == std::vector<frame_index>{{2}, {3}});
         CHECK(*report.grids[0].hit_rate() > 0.98);
 
         render_settings<float> texels;
@@ -118,8 +119,8 @@ TEST_SUITE("inspection/preflight") {
         auto const report = flown(slanted_maps(2)); // 4 keyframes of 2 frames
         CHECK_FALSE(report.allows_run());
         REQUIRE(says(report, keyframes_refused));
-        CHECK(report.recommendations[0].sentence() ==
-              "keyframes cannot be drawn: draw_keyframes: count is 4, expected 1 to the animation's 2 frames");
+        CHECK(report.recommendations[0].kind == keyframes_refused);
+        CHECK(report.recommendations[0].detail == "draw_keyframes: count is 4, expected 1 to the animation's 2 frames");
         CHECK(report.steps.empty());
         CHECK_FALSE(report.grids[0].coverage());
     }

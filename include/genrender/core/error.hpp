@@ -3,6 +3,10 @@
 // expected.
 #pragma once
 
+#if __cplusplus <= 201703L && !(defined(_MSVC_LANG) && _MSVC_LANG > 201703L)
+#error "genrender is C++20: compile with -std=c++20 or later"
+#endif
+
 #include <cstddef>
 #include <initializer_list>
 #include <stdexcept>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/correspondence/kept_samples.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
@@ -27,7 +28,7 @@ namespace detail {
 template <std::size_t D>
 void require_finite_point(char const* function, std::array<float, D> const& point) {
     for (auto const coordinate : point) {
-        require_value(std::isfinite(coordinate), function, "maps", coordinate, "finite canonical coordinates");
+        require_value(is_finite(coordinate), function, "maps", coordinate, "finite canonical coordinates");
     }
 }
 

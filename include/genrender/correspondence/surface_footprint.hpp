@@ -2,6 +2,7 @@
 // How much of a surface one pixel covers: derivatives of canonical coordinates along the screen.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 
 #include <algorithm>
@@ -120,7 +121,7 @@ std::optional<surface_footprint<Maps::dimensions>> footprint_at(Maps const& maps
     }
     surface_footprint<D> const footprint{*across, *down};
     auto const area = footprint.area();
-    return area > 0 && std::isfinite(area) ? std::optional(footprint) : std::nullopt;
+    return area > 0 && is_finite(area) ? std::optional(footprint) : std::nullopt;
 }
 
 } // namespace genrender

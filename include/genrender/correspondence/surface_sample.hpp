@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/texture_resolution.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
@@ -36,7 +37,7 @@ inline std::optional<surface_sample> representative_sample(uv_maps_view const& m
 inline texel texel_of(surface_sample const& sample, texture_resolution const& resolution) {
     auto const T = static_cast<double>(resolution.of(sample.object));
     auto const clamped = [T](float coordinate) {
-        require_value(std::isfinite(coordinate), "texel_of", "uv", coordinate, "finite texture coordinates");
+        require_value(is_finite(coordinate), "texel_of", "uv", coordinate, "finite texture coordinates");
         return static_cast<std::uint32_t>(std::clamp(std::floor(static_cast<double>(coordinate) * T), 0.0, T - 1));
     };
     return {sample.object, clamped(sample.uv[1]), clamped(sample.uv[0])};

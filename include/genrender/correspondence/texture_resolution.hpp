@@ -2,6 +2,7 @@
 // [GR sec. 3.2, supplement: effect of texture resolution] How many texels along each side an object's texture has.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
 
@@ -74,7 +75,7 @@ private:
             auto const uv_b = maps.point_at(frame, b);
             auto const length = std::hypot(uv_a[0] - uv_b[0], uv_a[1] - uv_b[1]);
             // A median of numbers that do not compare is undefined; whoever reads such a UV refuses it.
-            if (std::isfinite(length)) {
+            if (is_finite(length)) {
                 steps[maps.object_at(frame, a)].push_back(length);
             }
         }

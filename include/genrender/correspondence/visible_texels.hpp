@@ -50,7 +50,7 @@ public:
             std::sort(inside_.begin(), inside_.end());
             auto sample = inside_.begin();
             for (std::uint32_t slot = 0; slot < nearest_.size(); ++slot) {
-                if (nearest_[slot].distance == std::numeric_limits<double>::infinity()) {
+                if (nearest_[slot].distance == unseen) {
                     continue;
                 }
                 table.mark(slot);
@@ -75,9 +75,12 @@ public:
         }
 
     private:
+        // A number, since compilers may assume that nothing is infinite.
+        static constexpr double unseen = (std::numeric_limits<double>::max)();
+
         struct nearest_sample {
             token_index token;
-            double distance = std::numeric_limits<double>::infinity();
+            double distance = unseen;
             bool is_inside = false;
         };
         std::vector<nearest_sample> nearest_;

@@ -2,6 +2,7 @@
 // [GR sec. 4] Pixels of two frames that show one surface point to a fraction of a pixel: what errors are measured at.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/evaluation/pixel_objects.hpp>
@@ -173,7 +174,7 @@ private:
     static std::array<float, 2> finite_uv(uv_maps_view const& maps, frame_index i, pixel at) {
         auto const uv = maps.point_at(i, at);
         for (auto const coordinate : uv) {
-            require_value(std::isfinite(coordinate), "pixel_correspondence", "uv", coordinate,
+            require_value(is_finite(coordinate), "pixel_correspondence", "uv", coordinate,
                           "finite texture coordinates");
         }
         return uv;

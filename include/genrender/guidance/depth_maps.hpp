@@ -2,12 +2,12 @@
 // [GR sec. 3] Depth maps of an animation, and the sequence-wide inverse depth that depth-conditioned networks take.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -46,7 +46,7 @@ inline tensor<float, 3> sequence_inverse_depth(depth_maps const& maps) {
         if (covered[i] == 0) {
             continue;
         }
-        require_value(std::isfinite(depth[i]) && depth[i] > 0, "sequence_inverse_depth", "maps.depth", depth[i],
+        require_value(is_finite(depth[i]) && depth[i] > 0, "sequence_inverse_depth", "maps.depth", depth[i],
                       "finite depths above 0 where covered");
         nearest = std::max(nearest, 1 / depth[i]);
         farthest = std::min(farthest, 1 / depth[i]);

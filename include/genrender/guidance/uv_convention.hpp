@@ -2,6 +2,7 @@
 // [GR sec. 3] How another renderer writes UV, and the change to this library's way: v downwards, everything in [0, 1].
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/core/strided_view.hpp>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ struct uv_convention {
 namespace detail {
 
 inline float inside(float coordinate, uv_outside rule) {
-    if (rule == uv_outside::keep || (coordinate >= 0 && coordinate <= 1) || !std::isfinite(coordinate)) {
+    if (rule == uv_outside::keep || (coordinate >= 0 && coordinate <= 1) || !is_finite(coordinate)) {
         return coordinate;
     }
     if (rule == uv_outside::clamp) {

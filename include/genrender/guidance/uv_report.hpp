@@ -2,10 +2,10 @@
 // [GR sec. 3] What is unusual about given UV maps, in numbers, before they are worked with.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -42,7 +42,7 @@ inline uv_report inspect(uv_maps_view const& maps) {
                 }
                 ++report.covered;
                 auto const uv = maps.point_at({frame}, {row, column});
-                auto const finite = std::isfinite(uv[0]) && std::isfinite(uv[1]);
+                auto const finite = is_finite(uv[0]) && is_finite(uv[1]);
                 auto const on_texture = uv[0] >= 0 && uv[0] <= 1 && uv[1] >= 0 && uv[1] <= 1;
                 report.not_finite += !finite;
                 report.out_of_range += finite && !on_texture;

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <genrender/blending/mix_rows.hpp>
+#include <genrender/core/finite.hpp>
 
-#include <cmath>
 #include <type_traits>
 
 namespace genrender {
@@ -16,7 +16,7 @@ namespace genrender {
 template <class Real>
 void post_attention(strided_view<Real, 2> F_hat, in_view<Real, 3> F_KF,
                     sparse_rows<std::type_identity_t<Real>> const& rows, std::type_identity_t<Real> alpha) {
-    require_value(std::isfinite(alpha), "post_attention", "alpha", alpha, "a finite number");
+    require_value(is_finite(alpha), "post_attention", "alpha", alpha, "a finite number");
     if (alpha == 0) {
         return;
     }
@@ -28,7 +28,7 @@ template <class Real, class Stored>
     requires half_storage<std::remove_const_t<Stored>>
 void post_attention(strided_view<Real, 2> F_hat, strided_view<Stored, 3> F_KF,
                     sparse_rows<std::type_identity_t<Real>> const& rows, std::type_identity_t<Real> alpha) {
-    require_value(std::isfinite(alpha), "post_attention", "alpha", alpha, "a finite number");
+    require_value(is_finite(alpha), "post_attention", "alpha", alpha, "a finite number");
     if (alpha == 0) {
         return;
     }

@@ -2,21 +2,14 @@
 // [GR sec. 3] Maps without what no search can take: pixels whose canonical coordinates are not finite.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace genrender {
-
-/// Whether all canonical coordinates of a point are finite.
-template <std::size_t D>
-bool is_finite(std::array<float, D> const& point) {
-    return std::all_of(point.begin(), point.end(), [](float x) { return std::isfinite(x); });
-}
 
 /// A model of canonical_maps that shows what other maps show where it is finite, and background elsewhere. Those maps
 /// must outlive it.

@@ -2,9 +2,9 @@
 // [GR sec. 3] One frame's share of what is told of its objects: counts of all pixels, samples of neighbours and claims.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/inspection/finite_maps.hpp>
 #include <genrender/inspection/object_check.hpp>
 #include <genrender/inspection/pixel_check.hpp>
 #include <genrender/inspection/pixel_lattice.hpp>

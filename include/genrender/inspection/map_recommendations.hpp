@@ -13,7 +13,7 @@
 
 namespace genrender {
 
-/// From which figure on something is worth a sentence. Shares in [0, 1].
+/// From which figure on something is a finding. Shares in [0, 1].
 struct recommendation_thresholds {
     double overlapping = 0.02;     ///< of an object's pixels; mirrored likewise
     double tiled = 0.02;           ///< of an object's pixels
@@ -92,7 +92,7 @@ void recommend_on_object(object_check const& object, double token_pixels, recomm
 } // namespace detail
 
 /// Recommendations on the maps alone, those on frames first, then by object; `finest` is the finest feature grid.
-/// Frames without background are worth a sentence only if the run `needs_background`.
+/// Frames without background are one only if the run `needs_background`.
 inline std::vector<recommendation> recommendations_on(map_check const& check, grid_extents finest,
                                                       recommendation_thresholds const& from = {},
                                                       bool needs_background = true) {

@@ -3,9 +3,9 @@
 // twice.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/inspection/finite_maps.hpp>
 #include <genrender/inspection/screen_search.hpp>
 
 #include <algorithm>

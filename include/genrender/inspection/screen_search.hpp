@@ -2,10 +2,10 @@
 // Where on the screen of a frame a surface point is seen, to a fraction of a pixel of the full-resolution maps.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/correspondence/sample_tree.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/inspection/finite_maps.hpp>
 #include <genrender/inspection/pixel_lattice.hpp>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 
@@ -51,7 +52,7 @@ private:
     std::array<float, 3> unit(frame_index i, double row, double column) const {
         auto const given = direction(i, row, column);
         auto const length = std::hypot(given[0], given[1], given[2]);
-        require_value(length > 0 && std::isfinite(length), "environment_rays", "length of direction", length,
+        require_value(length > 0 && is_finite(length), "environment_rays", "length of direction", length,
                       "a finite number above 0");
         return {static_cast<float>(given[0] / length), static_cast<float>(given[1] / length),
                 static_cast<float>(given[2] / length)};

@@ -3,12 +3,12 @@
 // denoiser.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/guidance/background_mask.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -52,7 +52,7 @@ void require_finite_coordinates(Maps const& UV) {
                     continue;
                 }
                 for (auto const coordinate : UV.point_at({frame}, {row, column})) {
-                    if (!std::isfinite(coordinate)) {
+                    if (!is_finite(coordinate)) {
                         throw value_error("render: UV of frame " + std::to_string(frame) + " at row " +
                                           std::to_string(row) + " column " + std::to_string(column) + " is " +
                                           std::to_string(coordinate) + ", expected finite texture coordinates");
@@ -120,7 +120,7 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
             }
             for (std::size_t step = 0; step < settings.steps; ++step) {
                 auto const alpha = settings.alpha(step, site);
-                require_value(std::isfinite(alpha), "render", "settings.alpha", alpha, "finite numbers");
+                require_value(is_finite(alpha), "render", "settings.alpha", alpha, "finite numbers");
             }
             maps.add(site.grid, make_map);
         }
@@ -156,6 +156,7 @@ template <denoiser Phi, canonical_maps Maps, class MakeMap, parallel_loop Loop =
 latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV, MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
+    require_correspondence_map<map_made_by<MakeMap>>();
     return render(generative_rendering{}, phi, UV, make_map, settings, report, std::move(observer), loop);
 }
 
@@ -165,6 +166,26 @@ latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
     return render(generative_rendering{}, phi, UV, settings, report, std::move(observer), loop);
+}
+
+/// What follows renders nothing: it says in a sentence which argument of render() is not what it must be.
+template <class Phi, class Maps, class... Rest>
+    requires(canonical_maps<Maps> && !denoiser<Phi>)
+auto render(Phi const&, Maps const&, Rest const&...) { require_denoiser<Phi>(); }
+
+template <class Method, class Phi, class Maps, class... Rest>
+    requires(canonical_maps<Maps> && !denoiser<Phi>)
+auto render(Method const&, Phi const&, Maps const&, Rest const&...) { require_denoiser<Phi>(); }
+
+template <denoiser Phi, class Maps, class... Rest>
+    requires(!canonical_maps<Maps>)
+auto render(Phi const&, Maps const&, Rest const&...) { require_canonical_maps<Maps>(); }
+
+template <denoiser Phi, canonical_maps Maps, class Real, class... Rest>
+    requires(!std::is_same_v<Real, typename Phi::real_type>)
+auto render(Phi const&, Maps const&, render_settings<Real> const&, Rest const&...) {
+    static_assert(std::is_same_v<Real, typename Phi::real_type>,
+                  "render: settings are render_settings<Real> with the real_type of the denoiser");
 }
 
 } // namespace genrender

@@ -2,13 +2,13 @@
 // [GR alg. 1: the body of the loop] A denoiser of single frames becomes a denoiser of the whole animation.
 #pragma once
 
+#include <genrender/core/finite.hpp>
 #include <genrender/normalization/adain.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/sequence_evaluation.hpp>
 #include <genrender/pipeline/sequence_method.hpp>
 
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -77,7 +77,7 @@ private:
     static void require_finite(latents<real_type> const& x0, std::size_t step) {
         auto const values = x0.size() / x0.shape()[0];
         for (std::size_t i = 0; i < x0.size(); ++i) {
-            if (!std::isfinite(x0.data()[i])) {
+            if (!is_finite(x0.data()[i])) {
                 throw value_error("sequence_denoiser: the denoiser's estimate of frame " + std::to_string(i / values) +
                                   " in step " + std::to_string(step) + " is " + std::to_string(x0.data()[i]) +
                                   ", expected finite latents");

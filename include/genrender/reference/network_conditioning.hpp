@@ -3,13 +3,13 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/reference/haar.hpp>
 #include <genrender/reference/unet_config.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace genrender::reference {
@@ -35,7 +35,7 @@ stack<Real, 4> depth_hint(strided_view<float const, 3> inverse_depth, std::size_
         for (std::size_t row = 0; row < height; ++row) {
             for (std::size_t column = 0; column < width; ++column) {
                 auto const value = inverse_depth(frame, row, column);
-                require_value(std::isfinite(value), "depth_hint", "inverse_depth", value, "finite numbers");
+                require_value(is_finite(value), "depth_hint", "inverse_depth", value, "finite numbers");
                 for (std::size_t channel = 0; channel < channels; ++channel) {
                     hint(frame, channel, row, column) = static_cast<Real>(value);
                 }
@@ -61,7 +61,7 @@ stack<Real, 4> haar_hint(strided_view<float const, 3> inverse_depth) {
                 std::array<Real, 4> y{};
                 for (std::size_t i = 0; i < 4; ++i) {
                     auto const value = inverse_depth(frame, 2 * row + i / 2, 2 * column + i % 2);
-                    require_value(std::isfinite(value), "haar_hint", "inverse_depth", value, "finite numbers");
+                    require_value(is_finite(value), "haar_hint", "inverse_depth", value, "finite numbers");
                     y[i] = static_cast<Real>(value);
                 }
                 auto const bands = internal::haar_square(y[0], y[1], y[2], y[3]);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/attention/attention_processor.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 #include <genrender/reference/controlnet.hpp>
@@ -17,7 +18,6 @@
 #include <genrender/sampling/preconditioning.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -201,8 +201,8 @@ private:
         require_value(hint.extent(3) % scale == 0, function, "width of hint", hint.extent(3), expected.c_str());
         latent_grid_ = {hint.extent(2) / scale, hint.extent(3) / scale};
         require_latent_grid(config_, latent_grid_);
-        require_value(std::isfinite(conditioning_.guidance_scale), function, "guidance_scale",
-                      conditioning_.guidance_scale, "a finite number");
+        require_value(is_finite(conditioning_.guidance_scale), function, "guidance_scale", conditioning_.guidance_scale,
+                      "a finite number");
         require_prompt("prompt", conditioning_.prompt);
         if (branches() == 2) {
             require_prompt("empty_prompt", conditioning_.empty_prompt);

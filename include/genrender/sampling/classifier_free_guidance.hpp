@@ -2,11 +2,11 @@
 // Classifier-free guidance (Ho and Salimans 2022, eq. 6): from the unconditional estimate past the conditional one.
 #pragma once
 
-#include <genrender/core/linear_combination.hpp>
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
+#include <genrender/core/linear_combination.hpp>
 #include <genrender/core/strided_view.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <type_traits>
 
@@ -25,7 +25,7 @@ void guide(strided_view<Real, 4> out, in_view<Real, 4> x0_uncond, in_view<Real, 
            std::type_identity_t<Real> scale) {
     require_shape("guide", "x0_uncond", x0_uncond, out.extents());
     require_shape("guide", "x0_cond", x0_cond, out.extents());
-    require_value(std::isfinite(scale), "guide", "scale", scale, "a finite number");
+    require_value(is_finite(scale), "guide", "scale", scale, "a finite number");
     linear_combination<Real, 4, 2>(out, {1 - scale, scale}, {x0_uncond, x0_cond});
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 
 #include <cmath>
 #include <concepts>
@@ -24,9 +25,9 @@ std::vector<Real> karras_schedule(std::size_t steps, Real sigma_min = Real(0.029
     auto const function = "karras_schedule";
     auto const positive = "a finite number above 0";
     require_value(steps >= 1, function, "steps", steps, "at least 1");
-    require_value(std::isfinite(sigma_min) && sigma_min > 0, function, "sigma_min", sigma_min, positive);
-    require_value(std::isfinite(sigma_max) && sigma_max > 0, function, "sigma_max", sigma_max, positive);
-    require_value(std::isfinite(rho) && rho > 0, function, "rho", rho, positive);
+    require_value(is_finite(sigma_min) && sigma_min > 0, function, "sigma_min", sigma_min, positive);
+    require_value(is_finite(sigma_max) && sigma_max > 0, function, "sigma_max", sigma_max, positive);
+    require_value(is_finite(rho) && rho > 0, function, "rho", rho, positive);
     require_value(sigma_max >= sigma_min, function, "sigma_max", sigma_max, "at least sigma_min");
     require_value(steps == 1 || sigma_max > sigma_min, function, "sigma_max", sigma_max,
                   "above sigma_min for more than one step");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -75,7 +76,7 @@ public:
     /// The noise level of time t; t outside [0, size() - 1] counts as the nearer end. Throws value_error if t is NaN.
     template <std::floating_point Real>
     Real sigma_of(Real t) const {
-        require_value(!std::isnan(t), "sigma_of", "t", t, "a number");
+        require_value(!is_nan(t), "sigma_of", "t", t, "a number");
         auto const position = std::clamp(static_cast<double>(t), 0.0, static_cast<double>(size() - 1));
         // The last interval is closed, so that its upper end has a neighbour above too.
         auto const low = std::min(static_cast<std::size_t>(position), size() - 2);

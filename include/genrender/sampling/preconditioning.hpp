@@ -2,8 +2,9 @@
 // [EDM eq. 7] From what a raw network predicts to the clean estimate D(z, sigma) = c_skip z + c_out F(c_in z, t).
 #pragma once
 
-#include <genrender/core/linear_combination.hpp>
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
+#include <genrender/core/linear_combination.hpp>
 #include <genrender/core/strided_view.hpp>
 
 #include <cmath>
@@ -49,7 +50,7 @@ struct scalings {
 /// finite and at least 0.
 template <std::floating_point Real>
 scalings<Real> scalings_of(prediction predicted, Real sigma) {
-    require_value(std::isfinite(sigma) && sigma >= 0, "scalings_of", "sigma", sigma, "a finite number of at least 0");
+    require_value(is_finite(sigma) && sigma >= 0, "scalings_of", "sigma", sigma, "a finite number of at least 0");
     auto const a = 1 / std::hypot(Real(1), sigma);
     switch (predicted) {
     case prediction::epsilon:
@@ -69,7 +70,7 @@ scalings<Real> scalings_of(prediction predicted, Real sigma) {
 /// being pure noise. Throws value_error unless sigma is finite and at least 0.
 template <std::floating_point Real>
 Real flow_time_of(Real sigma) {
-    require_value(std::isfinite(sigma) && sigma >= 0, "flow_time_of", "sigma", sigma, "a finite number of at least 0");
+    require_value(is_finite(sigma) && sigma >= 0, "flow_time_of", "sigma", sigma, "a finite number of at least 0");
     return sigma / (1 + sigma);
 }
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <iterator>
@@ -51,7 +51,7 @@ void require_noise_levels(char const* function, Sigmas const& sigmas) {
     }
     auto const name = [](std::size_t i) { return "sigmas[" + std::to_string(i) + "]"; };
     for (std::size_t i = 0; i < count; ++i) {
-        require_value(std::isfinite(sigmas[i]) && sigmas[i] >= 0, function, name(i).c_str(), sigmas[i],
+        require_value(is_finite(sigmas[i]) && sigmas[i] >= 0, function, name(i).c_str(), sigmas[i],
                       "a finite number of at least 0");
         require_value(i == 0 || sigmas[i] < sigmas[i - 1], function, name(i).c_str(), sigmas[i],
                       ("less than " + name(i - 1)).c_str());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/scene/bounds.hpp>
 
@@ -31,13 +32,13 @@ inline void validate(camera const& eye, char const* function = "validate") {
     auto finite = true;
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 4; ++row) {
-            finite = finite && std::isfinite(eye.view[column][row]);
+            finite = finite && is_finite(eye.view[column][row]);
         }
     }
     require_value(finite, function, "camera.view", "not finite", "a finite matrix");
     require_value(eye.vertical_fov > 0 && eye.vertical_fov < std::numbers::pi_v<float>, function, "camera.vertical_fov",
                   eye.vertical_fov, "an angle between 0 and pi");
-    require_value(eye.near_distance > 0 && std::isfinite(eye.near_distance), function, "camera.near_distance",
+    require_value(eye.near_distance > 0 && is_finite(eye.near_distance), function, "camera.near_distance",
                   eye.near_distance, "a finite distance above 0");
 }
 
@@ -59,7 +60,7 @@ inline camera look_at(glm::vec3 position, glm::vec3 target, float vertical_fov, 
 /// an image of `aspect` = width / height. Throws value_error at a box of one point, and as look_at does.
 inline camera fit_camera(bounds const& box, glm::vec3 direction, float vertical_fov, float aspect) {
     require_value(box.radius() > 0, "fit_camera", "box", "a single point", "an extent above 0");
-    require_value(aspect > 0 && std::isfinite(aspect), "fit_camera", "aspect", aspect, "width / height above 0");
+    require_value(aspect > 0 && is_finite(aspect), "fit_camera", "aspect", aspect, "width / height above 0");
     require_value(glm::length(direction) > 0, "fit_camera", "direction", "zero", "a direction");
     // The sphere touches the narrower pair of the four planes that bound the view.
     auto const half_height = std::tan(vertical_fov * 0.5f);

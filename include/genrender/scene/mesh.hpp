@@ -3,12 +3,12 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -27,9 +27,11 @@ struct mesh {
 
 namespace detail {
 
-inline bool is_finite(glm::vec2 p) { return std::isfinite(p.x) && std::isfinite(p.y); }
+using genrender::is_finite;
 
-inline bool is_finite(glm::vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+inline bool is_finite(glm::vec2 p) { return is_finite(p.x) && is_finite(p.y); }
+
+inline bool is_finite(glm::vec3 p) { return is_finite(p.x) && is_finite(p.y) && is_finite(p.z); }
 
 /// Throws value_error `function: name[i] is not finite, expected finite coordinates` at the first such element.
 template <class Vector>

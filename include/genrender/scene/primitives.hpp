@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/scene/mesh.hpp>
 
 #include <glm/geometric.hpp>
@@ -23,7 +24,7 @@ namespace genrender {
 namespace detail {
 
 inline void require_above_zero(char const* function, char const* argument, float value) {
-    require_value(value > 0 && std::isfinite(value), function, argument, value, "a finite length above 0");
+    require_value(value > 0 && is_finite(value), function, argument, value, "a finite length above 0");
 }
 
 /// Two triangles for each cell of a grid of (rows + 1) x (columns + 1) vertices that begins at vertex `first`.

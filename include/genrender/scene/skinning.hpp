@@ -3,6 +3,7 @@
 #pragma once
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -68,7 +69,7 @@ inline std::vector<joint_weights> normalized(std::vector<joint_weights> vertices
         auto& weights = vertices[i].weights;
         auto sum = 0.0f;
         for (int k = 0; k < 4; ++k) {
-            if (!(weights[k] >= 0 && std::isfinite(weights[k]))) {
+            if (!(weights[k] >= 0 && is_finite(weights[k]))) {
                 auto const argument = "weights[" + std::to_string(i) + "]";
                 require_value(false, "normalized", argument.c_str(), weights[k], "finite weights of at least 0");
             }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The text lines up, says first what to do, and tells the unmeasured from zero.
-#include <genrender/inspection/preflight_text.hpp>
+#include <examples/support/preflight_text.hpp>
 
 #include <genrender/guidance/uv_maps.hpp>
 #include <support/slanted_maps.hpp>
@@ -13,15 +13,9 @@
 #include <string>
 #include <vector>
 
-TEST_SUITE("inspection/preflight_text") {
+TEST_SUITE("examples_support/preflight_text") {
     using namespace genrender;
-
-    TEST_CASE("columns are as wide as their widest cell and numbers end below each other") {
-        CHECK(table_text({{"grid", "hits"}, {"64x64", "7"}, {"8x8", ""}}) == "  grid   hits\n"
-                                                                             "  64x64     7\n"
-                                                                             "  8x8\n");
-        CHECK(table_text({}).empty());
-    }
+    using namespace genrender::examples;
 
     TEST_CASE("sound maps are said to be as they should be") {
         auto const maps = testing::slanted_maps(6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A program of somebody who uses the library: includes all of it and calls a little.
+// A program of somebody who uses the library: includes all of the core and calls a little.
 #include <genrender/genrender.hpp>
 
 #include <iostream>

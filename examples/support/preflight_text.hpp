@@ -2,51 +2,23 @@
 // The pre-flight report as text: recommendations first, then the tables of grids, objects and frames they rest on.
 #pragma once
 
+#include "recommendation_text.hpp"
+#include "text_table.hpp"
+
 #include <genrender/inspection/preflight.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-namespace genrender {
-
-/// Rows of cells as lines of text: columns as wide as their widest cell, two spaces apart, aligned to the right but for
-/// the first. Every row has the cells of the first, which is the head.
-inline std::string table_text(std::vector<std::vector<std::string>> const& rows) {
-    std::vector<std::size_t> widths;
-    for (auto const& row : rows) {
-        widths.resize(std::max(widths.size(), row.size()));
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            widths[c] = std::max(widths[c], row[c].size());
-        }
-    }
-    std::string text;
-    for (auto const& row : rows) {
-        std::string line = "  ";
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            std::string const room(widths[c] - row[c].size(), ' ');
-            line += (c > 0 ? "  " : "") + (c == 0 ? row[c] + room : room + row[c]);
-        }
-        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    return text;
-}
+namespace genrender::examples {
 
 namespace detail {
 
-inline std::string fixed(double value, int digits) {
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-    return text.data();
-}
 /// A share as percents with one digit; `-` where nothing could be measured.
-inline std::string share_text(std::optional<double> share) { return share ? fixed(100 * *share, 1) : "-"; }
+inline std::string share_text(std::optional<double> share) { return share ? fixed_text(100 * *share, 1) : "-"; }
 inline std::string share_text(std::size_t part, std::size_t whole) {
     return whole > 0 ? share_text(share_of(part, whole)) : "-";
 }
@@ -61,7 +33,7 @@ inline std::string storage_text(object_check const& object) {
     for (auto const& levels : object.levels) {
         if (levels.is_quantised() && levels.quantum_in_pixels > coarsest) {
             coarsest = levels.quantum_in_pixels;
-            text = (levels.is_eight_bit ? "8 bit, " : "rounded, ") + fixed(coarsest, 1) + " px";
+            text = (levels.is_eight_bit ? "8 bit, " : "rounded, ") + fixed_text(coarsest, 1) + " px";
         }
     }
     return text;
@@ -77,7 +49,7 @@ inline std::string grids_text(preflight_report const& report) {
         }
         rows.push_back({extents_name(check.grid), std::to_string(report.maps.grid.height / check.grid.height),
                         share_text(check.hit_rate()), share_text(check.collisions()),
-                        check.error() ? fixed(*check.error(), 2) : "-", share_text(check.coverage()),
+                        check.error() ? fixed_text(*check.error(), 2) : "-", share_text(check.coverage()),
                         std::to_string(check.seen)});
     }
     return table_text(rows);
@@ -91,8 +63,8 @@ inline std::string objects_text(map_check const& maps) {
         std::string lowest;
         std::string greatest;
         for (auto const& range : object.range) {
-            lowest += (lowest.empty() ? "" : " ") + fixed(range[0], 2);
-            greatest += (greatest.empty() ? "" : " ") + fixed(range[1], 2);
+            lowest += (lowest.empty() ? "" : " ") + fixed_text(range[0], 2);
+            greatest += (greatest.empty() ? "" : " ") + fixed_text(range[1], 2);
         }
         rows.push_back({std::to_string(object.object.value), std::to_string(object.pixels),
                         std::to_string(object.frames.size()), lowest.empty() ? "-" : lowest,
@@ -143,16 +115,16 @@ inline std::string levels_text(map_check const& maps) {
 
 } // namespace detail
 
-/// The whole report for a person to read. `advice(recommendation)` is what stands for one: its sentence, or a program's
-/// that says how its users follow it.
+/// The whole report for a person to read. `advice(recommendation)` is what stands for one: its sentence, or one that
+/// also says how the program's users follow it.
 template <class Advice>
 std::string text_of(preflight_report const& report, Advice const& advice) {
     auto const& maps = report.maps;
     auto text = std::to_string(maps.frames.size()) + " frames of " + detail::extents_name(maps.grid) + " pixels, " +
                 std::to_string(maps.objects.size()) + " objects, " + std::to_string(maps.dimensions) +
-                " canonical coordinates; " + detail::fixed(static_cast<double>(report.map_bytes) / 1e6, 1) +
-                " MB of maps\nlooked at for " + detail::fixed(report.map_seconds, 1) + " s, at the grids for " +
-                detail::fixed(report.grid_seconds, 1) + " s\n\nRecommendations\n";
+                " canonical coordinates; " + fixed_text(static_cast<double>(report.map_bytes) / 1e6, 1) +
+                " MB of maps\nlooked at for " + fixed_text(report.map_seconds, 1) + " s, at the grids for " +
+                fixed_text(report.grid_seconds, 1) + " s\n\nRecommendations\n";
     for (auto const& one : report.recommendations) {
         text += (one.forbids_run() ? "  ! " : "  - ") + advice(one) + "\n";
     }
@@ -180,9 +152,7 @@ std::string text_of(preflight_report const& report, Advice const& advice) {
     return text;
 }
 
-/// The same with the library's own sentences.
-inline std::string text_of(preflight_report const& report) {
-    return text_of(report, [](recommendation const& one) { return one.sentence(); });
-}
+/// The same with the sentences alone.
+inline std::string text_of(preflight_report const& report) { return text_of(report, sentence_of); }
 
-} // namespace genrender
+} // namespace genrender::examples

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: MIT
+# What the library is made of: its components, the packages that each needs, and every header. From this one list come the
+# targets, the package's config and .pc files, and what the rules of the house compare the headers with.
+
+# genrender_package(NAME TARGET target INCLUDES expression [LEAST version] [PKG_CONFIG module] [LIBS flags] [MODULE])
+#   NAME         what find_package calls it, by its config file unless MODULE says otherwise; TARGET is what is linked
+#   INCLUDES     how an include of this package begins, after its `<`
+#   LEAST        the oldest version that will do
+#   PKG_CONFIG   its name there; LIBS are flags of a package that has none
+macro(genrender_package name)
+    cmake_parse_arguments(genrender_${name} "MODULE" "TARGET;INCLUDES;LEAST;PKG_CONFIG;LIBS" "" ${ARGN})
+endmacro()
+
+# genrender_component(NAME [PACKAGES packages] HEADERS headers)
+#   The core is genrender::genrender and has its rooms in the order in which the data flows. Every other component is
+#   genrender::NAME, lies in the room of its name, and links its packages and the core. Headers lie in include/genrender,
+#   the umbrella first; a file *.inl is a part of the headers that include it.
+macro(genrender_component name)
+    list(APPEND genrender_components ${name})
+    cmake_parse_arguments(genrender_${name} "" "" "PACKAGES;HEADERS" ${ARGN})
+endmacro()
+
+genrender_package(Eigen3 TARGET Eigen3::Eigen INCLUDES "Eigen/" LEAST 3.4 PKG_CONFIG eigen3)
+genrender_package(xtensor TARGET xtensor INCLUDES "(xtensor|xtl|xsimd)/" PKG_CONFIG xtensor)
+genrender_package(nanoflann TARGET nanoflann::nanoflann INCLUDES "nanoflann[.]hpp" PKG_CONFIG nanoflann)
+genrender_package(Threads MODULE TARGET Threads::Threads INCLUDES "thread>" LIBS -pthread)
+genrender_package(glm TARGET glm::glm INCLUDES "glm/" PKG_CONFIG glm)
+genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nlohmann/" PKG_CONFIG nlohmann_json)
+
+set(genrender_components "")
+genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
+    genrender.hpp
+    core/each_target.inl
+    core/error.hpp
+    core/finite.hpp
+    core/half_precision.hpp
+    core/half_storage.hpp
+    core/index.hpp
+    core/linalg.hpp
+    core/linear_combination.hpp
+    core/linear_combination.inl
+    core/parallel.hpp
+    core/random.hpp
+    core/sparse_rows.hpp
+    core/stack.hpp
+    core/strided_view.hpp
+    core/tensor.hpp
+    core/vector_target.hpp
+    core/vector_unit.hpp
+    core/vectors.hpp
+    core/vectors.inl
+    core/widening.inl
+    guidance/background_mask.hpp
+    guidance/canonical_maps.hpp
+    guidance/cell_extents.hpp
+    guidance/depth_maps.hpp
+    guidance/uv_convention.hpp
+    guidance/uv_maps.hpp
+    guidance/uv_maps_view.hpp
+    guidance/uv_report.hpp
+    correspondence/correspondence_map.hpp
+    correspondence/correspondence_set.hpp
+    correspondence/footprint_map.hpp
+    correspondence/kept_frame.hpp
+    correspondence/kept_samples.hpp
+    correspondence/recent_frames.hpp
+    correspondence/representative_pixel.hpp
+    correspondence/reproject.hpp
+    correspondence/sample_bins.hpp
+    correspondence/sample_distances.hpp
+    correspondence/sample_distances.inl
+    correspondence/sample_grid.hpp
+    correspondence/sample_grid.inl
+    correspondence/sample_pack.hpp
+    correspondence/sample_tree.hpp
+    correspondence/surface_correspondence.hpp
+    correspondence/surface_footprint.hpp
+    correspondence/surface_sample.hpp
+    correspondence/texel_grid.hpp
+    correspondence/texture_projection.hpp
+    correspondence/texture_resolution.hpp
+    correspondence/token_matches.hpp
+    correspondence/visible_texels.hpp
+    noise/background_noise.hpp
+    noise/brownian_bridge.hpp
+    noise/initial_noise.hpp
+    noise/noise_request.hpp
+    noise/noise_texture.hpp
+    noise/noise_tree.hpp
+    noise/normals.hpp
+    noise/normals.inl
+    noise/surface_noise.hpp
+    attention/attention_call.hpp
+    attention/attention_processor.hpp
+    attention/attention_scratch.hpp
+    attention/attention_scratch.inl
+    attention/attention_site.hpp
+    attention/attention_tile.hpp
+    attention/attention_tile.inl
+    attention/extended_attention.hpp
+    attention/feature_storage.hpp
+    attention/host_features.hpp
+    attention/key_value_view.hpp
+    attention/plain_attention.hpp
+    attention/scaled_dot_product.hpp
+    attention/scaled_dot_product.inl
+    sampling/classifier_free_guidance.hpp
+    sampling/denoiser.hpp
+    sampling/dpmpp_2m.hpp
+    sampling/euler.hpp
+    sampling/heun.hpp
+    sampling/karras_schedule.hpp
+    sampling/noise_schedule.hpp
+    sampling/preconditioning.hpp
+    sampling/sampler.hpp
+    sampling/sampler_arguments.hpp
+    keyframes/draw_keyframes.hpp
+    keyframes/feature_bank.hpp
+    keyframes/recorder.hpp
+    keyframes/stoppable_denoiser.hpp
+    blending/blend_plan.hpp
+    blending/mix_rows.hpp
+    blending/mix_rows.inl
+    blending/texel_weights.hpp
+    injection/feature_io.hpp
+    injection/host_attention_call.hpp
+    injection/injector.hpp
+    injection/post_attention.hpp
+    injection/pre_attention.hpp
+    normalization/adain.hpp
+    normalization/adain.inl
+    normalization/channel_statistics.hpp
+    normalization/channel_statistics.inl
+    pipeline/generative_rendering.hpp
+    pipeline/memory_plan.hpp
+    pipeline/progress.hpp
+    pipeline/render.hpp
+    pipeline/render_report.hpp
+    pipeline/render_settings.hpp
+    pipeline/run_description.hpp
+    pipeline/sequence_denoiser.hpp
+    pipeline/sequence_evaluation.hpp
+    pipeline/sequence_method.hpp
+    baselines/baseline_settings.hpp
+    baselines/per_frame.hpp
+    baselines/pix2video.hpp
+    baselines/previous_frame_attention.hpp
+    baselines/propagation_plan.hpp
+    baselines/token_propagation.hpp
+    baselines/tokenflow.hpp)
+
+genrender_component(scene PACKAGES glm HEADERS
+    scene.hpp
+    scene/animation.hpp
+    scene/bounds.hpp
+    scene/camera.hpp
+    scene/frame_rasterizer.hpp
+    scene/mesh.hpp
+    scene/primitives.hpp
+    scene/rasterizer.hpp
+    scene/skinning.hpp
+    scene/triangle_coverage.hpp
+    scene/uv_overlap.hpp)
+
+genrender_component(inspection HEADERS
+    inspection.hpp
+    inspection/coordinate_levels.hpp
+    inspection/finite_maps.hpp
+    inspection/frame_inspection.hpp
+    inspection/grid_check.hpp
+    inspection/map_check.hpp
+    inspection/map_recommendations.hpp
+    inspection/object_check.hpp
+    inspection/pixel_check.hpp
+    inspection/pixel_lattice.hpp
+    inspection/preflight.hpp
+    inspection/recommendation.hpp
+    inspection/screen_search.hpp
+    inspection/texture_tiles.hpp)
+
+genrender_component(evaluation HEADERS
+    evaluation.hpp
+    evaluation/contrast.hpp
+    evaluation/correspondence_error.hpp
+    evaluation/embeddings.hpp
+    evaluation/flicker.hpp
+    evaluation/frame_consistency.hpp
+    evaluation/image_text_embedder.hpp
+    evaluation/mean_and_error.hpp
+    evaluation/pixel_correspondence.hpp
+    evaluation/pixel_objects.hpp
+    evaluation/prompt_fidelity.hpp
+    evaluation/recognition.hpp
+    evaluation/sharpness.hpp
+    evaluation/time_slice.hpp)
+
+genrender_component(reference PACKAGES nlohmann_json HEADERS
+    reference.hpp
+    reference/activation.hpp
+    reference/activation.inl
+    reference/attention_matrices.hpp
+    reference/checked_json.hpp
+    reference/config_file.hpp
+    reference/controlnet.hpp
+    reference/conv2d.hpp
+    reference/diffusers_config.hpp
+    reference/diffusers_folder.hpp
+    reference/embedded_hints.hpp
+    reference/encoded_frames.hpp
+    reference/feature_maps.hpp
+    reference/feed_forward.hpp
+    reference/forward_pass.hpp
+    reference/group_norm.hpp
+    reference/group_norm.inl
+    reference/haar.hpp
+    reference/layer_norm.hpp
+    reference/layer_norm.inl
+    reference/linear.hpp
+    reference/network_conditioning.hpp
+    reference/padded_map.hpp
+    reference/prompt_vocabulary.hpp
+    reference/reference_embedder.hpp
+    reference/reference_network.hpp
+    reference/reference_weights.hpp
+    reference/resampler.hpp
+    reference/resnet_block.hpp
+    reference/safetensors.hpp
+    reference/seeded_tensor.hpp
+    reference/site_list.hpp
+    reference/spatial_transformer.hpp
+    reference/time_embedding.hpp
+    reference/transformer_block.hpp
+    reference/unet.hpp
+    reference/unet_config.hpp
+    reference/unet_encoder.hpp
+    reference/weight_panels.hpp
+    reference/weight_panels.inl
+    reference/weights.hpp)
