@@ -56,6 +56,7 @@ bool register_all() {
             auto const row = std::string("by_target/") + hot_kernels.at(index).name + "/" + name;
             benchmark::RegisterBenchmark(
                 row.c_str(), [index, target = target](benchmark::State& state) { run_at(state, index, target); })
+                ->MinTime(0.02)
                 ->UseManualTime()
                 ->Unit(benchmark::kMicrosecond);
         }
