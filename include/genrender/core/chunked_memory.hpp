@@ -2,6 +2,8 @@
 // Memory for much that is small and stays: in large chunks, apart from what comes and goes.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <cstddef>
 #include <memory>
 #include <memory_resource>
@@ -57,3 +59,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

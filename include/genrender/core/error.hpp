@@ -3,6 +3,8 @@
 // expected.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <cstddef>
 #include <initializer_list>
 #include <stdexcept>
@@ -72,3 +74,5 @@ void require_value(bool holds, char const* function, char const* argument, Found
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Which tokens of a frame show what the tokens of another show, kept from step to step as far as memory goes.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/chunked_memory.hpp>
 #include <genrender/core/index.hpp>
 
@@ -92,3 +94,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

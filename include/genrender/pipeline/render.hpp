@@ -3,6 +3,8 @@
 // denoiser.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/guidance/background_mask.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
@@ -168,3 +170,5 @@ latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV,
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Memory for features that somebody is about to write: it begins at a cache line and holds anything.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -45,3 +47,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.1] Stable Diffusion in miniature: a UNet and a depth ControlNet on the CPU, a model of denoiser.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/parallel.hpp>
@@ -302,3 +304,5 @@ namespace genrender {
 using reference::reference_network;
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>
