@@ -2,7 +2,9 @@
 // Joins what a run of all benchmarks left in a folder into one table: beside targets and peers, as Markdown and JSON.
 #include <benchmarks/support/benchmark_results.hpp>
 #include <benchmarks/support/benchmark_table.hpp>
-#include <benchmarks/support/machine.hpp>
+#include <benchmarks/support/judged_results.hpp>
+#include <benchmarks/support/native_floors.hpp>
+#include <benchmarks/support/this_machine.hpp>
 
 #include <examples/support/output_file.hpp>
 
@@ -21,16 +23,23 @@ int main(int argc, char** argv) {
     std::filesystem::path folder;
     std::filesystem::path targets_file;
     std::filesystem::path out;
+    std::string filter;
     CLI::App app("Prints one table of all benchmarks that ran.");
     app.add_option("results", folder, "The folder of the files of --benchmark_out, those of the peers in peers/")
         ->required();
     app.add_option("--targets", targets_file, "A file of targets");
     app.add_option("--out", out, "The folder for benchmarks.md and benchmarks.json");
+    app.add_option("--filter", filter, "What the rows of the run had to match, for the text under the table");
     CLI11_PARSE(app, argc, argv);
     try {
         auto const targets = targets_file.empty() ? std::vector<target>() : read_targets(targets_file);
-        auto const judged = judge(read_results(folder), targets);
-        auto const machine = this_machine(GENRENDER_BENCHMARK_FLAGS);
+        auto const all = read_results(folder);
+        auto judged = judge(all, targets);
+        judged.filter = filter;
+        auto const machine = this_machine(
+            all, GENRENDER_BENCHMARK_FLAGS,
+            {"Eigen " GENRENDER_EIGEN_VERSION " (as a floor with " + native_vectors() + ")",
+             "xtensor " GENRENDER_XTENSOR_VERSION, "Google Benchmark " GENRENDER_GOOGLE_BENCHMARK_VERSION});
         auto const table = markdown_table(judged, machine);
         if (!out.empty()) {
             genrender::examples::write_text(out / "benchmarks.md", table);

@@ -31,7 +31,6 @@ set(genrender_components "")
 genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     genrender.hpp
     core/begin_header.inl
-    core/chunked_memory.hpp
     core/each_target.inl
     core/end_header.inl
     core/error.hpp
@@ -52,6 +51,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     core/vector_unit.hpp
     core/vectors.hpp
     core/vectors.inl
+    core/widening.inl
     guidance/background_mask.hpp
     guidance/canonical_maps.hpp
     guidance/cell_extents.hpp
@@ -210,7 +210,6 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/embedded_hints.hpp
     reference/encoded_frames.hpp
     reference/feature_maps.hpp
-    reference/feature_memory.hpp
     reference/feed_forward.hpp
     reference/forward_pass.hpp
     reference/group_norm.hpp

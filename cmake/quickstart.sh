@@ -13,7 +13,9 @@ sh cmake/quickstart.sh WHAT
   test      everything that continuous integration checks: g++, clang++ with sanitizers, this machine's vectors,
             headers, package
   bench     every benchmark beside its floor and its target, as one table (build/bench/benchmarks.md and .json); PyTorch,
-            NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them
+            NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
+            with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
+            earlier run, with --no-peers without the programs of others (benchmarks/README.md)
   packages  install the Debian packages that demo, evaluate, test and bench need, and do no more
 
 Packages that are missing are installed with apt-get; nothing is downloaded when all are there.
@@ -131,6 +133,8 @@ bench() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $bench_packages
     workflow bench
+    say "Measuring"
+    cmake -P build/bench/benchmarks/measure.cmake -- "$@"
     say "The table and all figures"
     ls build/bench/benchmarks.*
 }
@@ -143,7 +147,10 @@ case ${1-} in
         evaluate "$@"
         ;;
     test) run_tests ;;
-    bench) bench ;;
+    bench)
+        shift
+        bench "$@"
+        ;;
     packages) # shellcheck disable=SC2086 # a list of words
         install_packages $test_packages ;;
     *)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 1] Attention over a frame's own tokens and those of keyframes, beside Eigen's product of as many FLOPs.
+// [GR eq. 1] Attention over a frame's own tokens and those of keyframes, beside Eigen's product of as many FLOPs; and on
+// more and more threads beside one.
 #include <genrender/attention/scaled_dot_product.hpp>
 
 #include <genrender/core/linalg.hpp>
@@ -8,6 +9,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <benchmarks/support/native_floors.hpp>
+#include <benchmarks/support/on_threads.hpp>
 #include <benchmarks/support/paired_timing.hpp>
 
 #include <array>
@@ -50,10 +53,10 @@ void attend(benchmark::State& state) {
     for (std::size_t k = 0; k < keyframes; ++k) {
         blocks[k + 1] = {K_KF.view()[k], V_KF.view()[k]};
     }
-    constexpr Eigen::Index n = 1024;
-    static matrix<float> const A = matrix<float>::Random(n, n);
-    static matrix<float> const B = matrix<float>::Random(n, n);
-    static matrix<float> C(n, n);
+    constexpr std::size_t n = 1024;
+    static auto const A = filled<float, 2>({n, n});
+    static auto const B = filled<float, 2>({n, n});
+    static stack<float, 2> C({n, n});
 
     auto const flops = 4.0 * static_cast<double>(frames * tokens) * static_cast<double>((keyframes + 1) * tokens) *
                        static_cast<double>(channels);
@@ -63,7 +66,8 @@ void attend(benchmark::State& state) {
             scaled_dot_product(F.view()[i], Q.view()[i], blocks, heads);
         }
     };
-    time_against(state, {"Eigen's matrix product", 2.0 * n * n * n / flops}, attend_all, [&] { C.noalias() = A * B; });
+    time_against(state, {"Eigen's matrix product", 2.0 * n * n * n / flops}, attend_all,
+                 [&] { native_product(C.data(), A.data(), B.data(), n, n, n); });
     state.counters["FLOP/s"] = benchmark::Counter(flops, benchmark::Counter::kIsIterationInvariantRate);
 }
 
@@ -90,5 +94,18 @@ BENCHMARK(attention_bfloat16)
     ->Args({1, 1024, 8, 80, 5})
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime();
+
+/// A frame's own tokens and as many of a keyframe; threads share out heads and queries.
+void attention_on_threads(benchmark::State& state) {
+    constexpr std::size_t tokens = 1024;
+    constexpr std::size_t channels = 640;
+    stack<float, 2> F({tokens, channels});
+    auto const Q = filled<float, 2>({tokens, channels});
+    auto const K = filled<float, 3>({2, tokens, channels});
+    auto const V = filled<float, 3>({2, tokens, channels});
+    std::array<key_value_view<float>, 2> const blocks{{{K.view()[0], V.view()[0], {}}, {K.view()[1], V.view()[1], {}}}};
+    time_on_threads(state, [&](threaded_loop const& loop) { scaled_dot_product(F.view(), Q, blocks, 8, loop); });
+}
+BENCHMARK(attention_on_threads)->Apply(on_thread_counts);
 
 } // namespace

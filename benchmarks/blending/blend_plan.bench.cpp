@@ -119,6 +119,7 @@ BENCHMARK(plans_of_a_run)
     ->ArgNames({"frames", "steps"})
     ->Args({24, 50})
     ->Iterations(1)
+    ->Repetitions(2)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] The kernel of blending at the shapes of Stable Diffusion's decoder, beside a copy of the same bytes.
+// [GR eq. 6] The kernel of blending at the shapes of Stable Diffusion's decoder, beside a copy of the same bytes; on more
+// and more threads beside one; and the same by way of a texture in memory.
 #include <genrender/blending/mix_rows.hpp>
 
 #include <genrender/blending/blend_plan.hpp>
@@ -10,6 +11,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <benchmarks/support/on_threads.hpp>
 #include <benchmarks/support/paired_timing.hpp>
 #include <benchmarks/support/turning_world.hpp>
 
@@ -144,6 +146,17 @@ BENCHMARK(mix_many_frames)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 
+/// The tokens of a frame, shared out over threads.
+void mix_on_threads(benchmark::State& state) {
+    constexpr std::size_t tokens = 4096;
+    constexpr std::size_t channels = 320;
+    auto F = filled<float>({1, tokens, channels});
+    auto const F_KF = filled<float>({KF.size(), tokens, channels});
+    auto const rows = plans_of(tokens)[7].rows();
+    time_on_threads(state, [&](threaded_loop const& loop) { mix_rows(F.view()[0], F_KF, rows, 0.7f, loop); });
+}
+BENCHMARK(mix_on_threads)->Apply(on_thread_counts);
+
 /// The same by way of a texture in memory, once for one frame: each keyframe is written to the texels of its tokens'
 /// squares, their mean and first fill are taken, and the frame reads the texel of each of its tokens.
 void dense_texture(benchmark::State& state) {
@@ -191,7 +204,9 @@ BENCHMARK(dense_texture)
     ->ArgNames({"tokens", "channels", "texels"})
     ->Args({4096, 320, 1024})
     ->Args({1024, 640, 1024})
+    ->Args({4096, 320, 256}) // beside a peer, which takes half a minute for the first
     ->Iterations(1)
+    ->Repetitions(2)
     ->Unit(benchmark::kMillisecond);
 
 } // namespace

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "benchmarks/support/on_threads.hpp"
 #include "benchmarks/support/paired_timing.hpp"
 
 using namespace genrender;
@@ -66,13 +67,9 @@ BENCHMARK(shared_loop)
 /// Arithmetic alone on so many threads: what the machine's threads are worth, whatever the library does. A share of the
 /// number of threads is all there is.
 void arithmetic(benchmark::State& state) {
-    auto const threads = static_cast<std::size_t>(state.range(0));
-    threaded_loop const many(threads);
-    threaded_loop const one(1);
-    auto const run = [](threaded_loop const& loop) { loop(12, [](std::size_t) { work_for(2000000); }); };
-    time_against(
-        state, floor_of{"one thread"}, [&] { run(many); }, [&] { run(one); });
+    benchmarks::time_on_threads(state,
+                                [](threaded_loop const& loop) { loop(12, [](std::size_t) { work_for(2000000); }); });
 }
-BENCHMARK(arithmetic)->ArgName("threads")->Arg(2)->UseManualTime();
+BENCHMARK(arithmetic)->Apply(benchmarks::on_thread_counts);
 
 } // namespace

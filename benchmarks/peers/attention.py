@@ -9,10 +9,12 @@ import torch
 from support.attention_cases import attention_cases
 from support.peer_times import peer_times, pytorch_name
 
+KERNELS = ["attention"]
+
 
 @torch.inference_mode()
 def main():
-    times = peer_times(__doc__)
+    times = peer_times(__doc__, KERNELS)
     torch.set_num_threads(1)
     for name, frames, tokens, heads, head_size, keyframes in attention_cases():
         if not times.wants(name):

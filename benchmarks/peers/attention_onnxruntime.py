@@ -15,6 +15,8 @@ import onnx
 from support.attention_cases import attention_cases
 from support.peer_times import peer_times
 
+KERNELS = ["attention"]
+
 
 def attention(heads, q, k, v):
     """Runs the operator for queries [frames, tokens, channels] and keys and values [frames, tokens, channels] or
@@ -44,7 +46,7 @@ def attention(heads, q, k, v):
 
 
 def main():
-    times = peer_times(__doc__)
+    times = peer_times(__doc__, KERNELS)
     numbers = numpy.random.default_rng(1)
     for name, frames, tokens, heads, head_size, keyframes in attention_cases():
         if not times.wants(name):

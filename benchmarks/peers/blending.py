@@ -10,6 +10,8 @@ import torch
 
 from support.peer_times import peer_times, pytorch_name
 
+KERNELS = ["mix<float>", "mix<float16>", "mix<bfloat16>", "dense_texture", "normalize"]
+
 KEYFRAMES = 5
 SOURCES = 4  # of a token, about as many as in the benchmark's scene
 ALPHA = 0.7
@@ -78,7 +80,7 @@ def normalize(frames, latents):
 
 @torch.inference_mode()
 def main():
-    times = peer_times(__doc__)
+    times = peer_times(__doc__, KERNELS)
     torch.set_num_threads(1)
 
     def measure(name, peer, make, warm_ups=2):
@@ -89,8 +91,8 @@ def main():
         for kind, stored in (("float", torch.float32), ("float16", torch.float16), ("bfloat16", torch.bfloat16)):
             shape = f"tokens:{tokens}/channels:{channels}"
             measure(f"mix<{kind}>/{shape}", pytorch_name(), lambda: mix(tokens, channels, stored))
-    measure("dense_texture/tokens:4096/channels:320/texels:1024/iterations:1", pytorch_name(),
-            lambda: dense_texture(4096, 320, 1024), warm_ups=0)
+    measure("dense_texture/tokens:4096/channels:320/texels:256/iterations:1/repeats:2", pytorch_name(),
+            lambda: dense_texture(4096, 320, 256), warm_ups=0)
     for frames in (24, 1000):
         measure(f"normalize/frames:{frames}/latents:64", f"NumPy {numpy.__version__}", lambda: normalize(frames, 64))
     times.print()

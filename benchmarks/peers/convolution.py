@@ -8,6 +8,8 @@ import torch
 
 from support.peer_times import peer_times, pytorch_name
 
+KERNELS = ["convolution"]
+
 CASES = [  # size, in, out, kernel, stride
     (64, 64, 64, 3, 1),
     (32, 32, 32, 3, 1),
@@ -20,7 +22,7 @@ CASES = [  # size, in, out, kernel, stride
 
 @torch.inference_mode()
 def main():
-    times = peer_times(__doc__)
+    times = peer_times(__doc__, KERNELS)
     torch.set_num_threads(1)
     for size, ins, outs, kernel, stride in CASES:
         name = f"convolution/size:{size}/in:{ins}/out:{outs}/kernel:{kernel}/stride:{stride}"

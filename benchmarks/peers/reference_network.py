@@ -14,6 +14,8 @@ from diffusers import ControlNetModel, UNet2DConditionModel
 
 from support.peer_times import peer_times, pytorch_name
 
+KERNELS = ["reference_network_tiny", "reference_network_mid"]
+
 CASES = {  # block_out_channels[0], tokens of the prompt, [latents, frames, threads]
     "reference_network_tiny": ("32", 4, [(32, 1, 1), (64, 1, 1), (32, 8, 1), (32, 1, 2), (64, 1, 2), (32, 8, 2)]),
     "reference_network_mid": ("64", 77, [(32, 1, 1), (64, 1, 1), (32, 2, 1), (32, 1, 2), (64, 1, 2), (32, 2, 2)]),
@@ -28,19 +30,21 @@ def numbers(*shape):
 
 @torch.inference_mode()
 def main():
-    times = peer_times(__doc__)
+    times = peer_times(__doc__, KERNELS)
     if "GENRENDER_NETWORK_FOLDER" not in os.environ:
         sys.exit("set GENRENDER_NETWORK_FOLDER to where the benchmark left its weights")
     networks = pathlib.Path(os.environ["GENRENDER_NETWORK_FOLDER"])
 
     for function, (folder, tokens, cases) in CASES.items():
+        wanted = [(f"{function}/latents:{latents}/frames:{frames}/threads:{threads}", latents, frames, threads)
+                  for latents, frames, threads in cases]
+        wanted = [case for case in wanted if times.wants(case[0])]
+        if not wanted:
+            continue
         unet = UNet2DConditionModel.from_pretrained(networks / folder, subfolder="unet").eval()
         control = ControlNetModel.from_pretrained(networks / folder, subfolder="controlnet").eval()
         scale = 2 ** (len(control.config.conditioning_embedding_out_channels) - 1)
-        for latents, frames, threads in cases:
-            name = f"{function}/latents:{latents}/frames:{frames}/threads:{threads}"
-            if not times.wants(name):
-                continue
+        for name, latents, frames, threads in wanted:
             torch.set_num_threads(threads)
             z = numbers(frames, unet.config.in_channels, latents, latents)
             hint = numbers(frames, control.config.conditioning_channels, scale * latents, scale * latents)

@@ -7,6 +7,7 @@
 #include <genrender/injection/injector.hpp>
 #include <genrender/reference/reference_network.hpp>
 
+#include "benchmarks/support/on_threads.hpp"
 #include "benchmarks/support/paired_timing.hpp"
 
 #include <benchmark/benchmark.h>
@@ -116,7 +117,7 @@ void injected_pass(benchmark::State& state) {
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(frame_count));
 }
-BENCHMARK(injected_pass)->ArgName("threads")->Arg(2)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(injected_pass)->Apply(benchmarks::on_thread_counts);
 
 /// One evaluation of the method, keyframes and frames; its share is what reuse of keyframes saves: 1 is nothing.
 void evaluation_with_reuse(benchmark::State& state) {

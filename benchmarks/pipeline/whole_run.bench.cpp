@@ -2,7 +2,6 @@
 // [GR alg. 1] What a whole run spends outside the network, and what it holds beside what was planned.
 #include <genrender/pipeline/render.hpp>
 
-#include <genrender/core/linalg.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/guidance/depth_maps.hpp>
 #include <genrender/scene/rasterizer.hpp>
@@ -11,6 +10,7 @@
 
 #include <benchmarks/support/costless_denoiser.hpp>
 #include <benchmarks/support/median.hpp>
+#include <benchmarks/support/native_floors.hpp>
 #include <benchmarks/support/own_process.hpp>
 #include <benchmarks/support/paired_timing.hpp>
 #include <benchmarks/support/turning_world.hpp>
@@ -122,13 +122,14 @@ BENCHMARK(whole_run)
 
 /// FLOPs a second of Eigen's products of 1024^3, one on each thread of the loop.
 double product_rate(threaded_loop const& loop) {
-    constexpr Eigen::Index n = 1024;
-    matrix<float> const A = matrix<float>::Random(n, n);
-    matrix<float> const B = matrix<float>::Random(n, n);
-    std::vector<matrix<float>> C(loop.threads(), matrix<float>::Zero(n, n));
+    constexpr std::size_t n = 1024;
+    std::vector<float> const A(n * n, 0.5F);
+    std::vector<float> const B(n * n, 0.25F);
+    std::vector<std::vector<float>> C(loop.threads(), std::vector<float>(n * n));
     std::vector<double> seconds;
     for (std::size_t turn = 0; turn < 9; ++turn) {
-        seconds.push_back(seconds_of([&] { loop(C.size(), [&](std::size_t i) { C[i].noalias() = A * B; }); }));
+        seconds.push_back(seconds_of(
+            [&] { loop(C.size(), [&](std::size_t i) { native_product(C[i].data(), A.data(), B.data(), n, n, n); }); }));
     }
     return static_cast<double>(C.size()) * 2 * n * n * n / median(std::move(seconds));
 }

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Convolutions of a UNet beside Eigen's product of the same FLOPs, for which neighbourhoods would have to be gathered.
-#include <genrender/core/linalg.hpp>
+// Convolutions of a UNet beside Eigen's product of the same FLOPs, for which neighbourhoods would have to be gathered;
+// and on more and more threads beside one.
 #include <genrender/core/stack.hpp>
 #include <genrender/reference/conv2d.hpp>
 
+#include <benchmarks/support/native_floors.hpp>
+#include <benchmarks/support/on_threads.hpp>
 #include <benchmarks/support/paired_timing.hpp>
 
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cstddef>
 
 using namespace genrender;
@@ -15,6 +18,15 @@ using namespace genrender;
 using namespace genrender::reference;
 
 namespace {
+
+/// Numbers in [-1, 1].
+stack<float, 2> numbers(std::array<std::size_t, 2> const& extents) {
+    stack<float, 2> values(extents);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values.data()[i] = static_cast<float>(i * 7919 % 1009) / 504.0f - 1;
+    }
+    return values;
+}
 
 void convolution(benchmark::State& state) {
     auto const size = static_cast<std::size_t>(state.range(0));
@@ -27,15 +39,15 @@ void convolution(benchmark::State& state) {
     conv2d<float> const conv(source, "conv", ins, outs, kernel, stride);
     auto const tokens = conv.out_grid(grid).size();
     auto const inputs = kernel * kernel * ins;
-    matrix<float> const in =
-        matrix<float>::Random(static_cast<Eigen::Index>(grid.size()), static_cast<Eigen::Index>(ins));
+    auto const in = numbers({grid.size(), ins});
     stack<float, 2> out({tokens, outs});
 
-    matrix<float> const A = matrix<float>::Random(static_cast<Eigen::Index>(tokens), static_cast<Eigen::Index>(inputs));
-    matrix<float> const B = matrix<float>::Random(static_cast<Eigen::Index>(inputs), static_cast<Eigen::Index>(outs));
-    matrix<float> C(A.rows(), B.cols());
+    auto const A = numbers({tokens, inputs});
+    auto const B = numbers({inputs, outs});
+    stack<float, 2> C({tokens, outs});
     benchmarks::time_against(
-        state, {"matrix product of the same FLOPs"}, [&] { conv(out.view(), in, grid); }, [&] { C.noalias() = A * B; });
+        state, {"matrix product of the same FLOPs"}, [&] { conv(out.view(), in, grid); },
+        [&] { benchmarks::native_product(C.data(), A.data(), B.data(), tokens, inputs, outs); });
     state.counters["FLOP/s"] = benchmark::Counter(2.0 * static_cast<double>(tokens * inputs * outs),
                                                   benchmark::Counter::kIsIterationInvariantRate);
 }
@@ -49,5 +61,16 @@ BENCHMARK(convolution)
     ->Args({64, 320, 320, 1, 1})
     ->Unit(benchmark::kMicrosecond)
     ->UseManualTime();
+
+/// Tokens are shared out over threads.
+void convolution_on_threads(benchmark::State& state) {
+    grid_extents const grid{32, 32};
+    auto source = weights<float>::seeded(1, "benchmark");
+    conv2d<float> const conv(source, "conv", 320, 320);
+    auto const in = numbers({grid.size(), 320});
+    stack<float, 2> out({grid.size(), 320});
+    benchmarks::time_on_threads(state, [&](threaded_loop const& loop) { conv(out.view(), in, grid, loop); });
+}
+BENCHMARK(convolution_on_threads)->Apply(benchmarks::on_thread_counts);
 
 } // namespace

@@ -4,6 +4,7 @@
 #include <genrender/core/stack.hpp>
 #include <genrender/reference/group_norm.hpp>
 
+#include <benchmarks/support/native_floors.hpp>
 #include <benchmarks/support/paired_timing.hpp>
 
 #include <benchmark/benchmark.h>
@@ -48,20 +49,10 @@ void group_norm_silu(benchmark::State& state) {
 
 /// What no order of the work can do without: to read everything before anything can be written, and then the SiLU.
 void group_norm_silu_of_numbers(benchmark::State& state) {
-    group_norm_silu_against(
-        state, {"a reading and the SiLU of each number"}, [](padded_map<float>& made, stack<float, 2> const& in) {
-            auto const row = made.grid().width * made.channels();
-            constexpr auto n = detail::lane_count<float>;
-            detail::lanes<float> sums[4]{};
-            for (std::size_t e = 0; e + 4 * n <= in.size(); e += 4 * n) {
-                detail::unrolled<4>([&](auto j) { sums[j] += detail::load(in.data() + e + j * n); });
-            }
-            benchmark::DoNotOptimize(sums);
-            for (std::size_t y = 0; y < made.grid().height; ++y) {
-                internal::each_register(made.row(y), in.data() + y * row, row,
-                                      [](std::size_t, auto x) { return internal::silu_of<float>(x); });
-            }
-        });
+    group_norm_silu_against(state, {"a reading and the SiLU of each number by Eigen"},
+                            [](padded_map<float>& made, stack<float, 2> const& in) {
+                                benchmarks::native_silu(made.row(0), in.data(), in.size());
+                            });
 }
 
 void shapes(benchmark::internal::Benchmark* bench) {

@@ -30,6 +30,7 @@ struct measurement {
     std::map<std::string, double> counters; ///< bytes_per_second, FLOP/s, share_of_floor, ...
     std::string label;                      ///< the floor, where there is a share of it
     std::string failure;                    ///< what the benchmark says if it could not run, else empty
+    std::optional<double> noise;            ///< deviation of the repetitions' seconds, as a share; none of one alone
 
     std::string kernel() const { return name.substr(0, name.find('/')); }
     std::string shape() const { return name.substr(std::min(name.find('/'), name.size() - 1) + 1); }
@@ -51,16 +52,30 @@ struct peer_time {
 struct target {
     std::regex cases;    ///< names of the measurements it holds for
     std::string says;    ///< the target in words
-    std::string measure; ///< a counter, `ratio_to_peer` or `ratio_to_case`: their time over ours
+    std::string measure; ///< a counter, `seconds`, `ratio_to_peer` or `ratio_to_case`: their time over ours
     std::regex peer;     ///< which peer
     std::string beside;  ///< which case; $1 is the first group of `cases`
     double limit = 0;
     bool is_least = true; ///< whether the limit is the least value or the greatest
 };
 
+/// A cache of the processor.
+struct cache {
+    std::string name; ///< L1 Data, L2
+    double bytes = 0;
+};
+
+/// The machine when the first program of a run began, as Google Benchmark found it.
+struct run_start {
+    std::string date;           ///< 2026-11-27T17:31:10+00:00
+    std::optional<double> load; ///< programs that ran in the minute before, on average
+    std::vector<cache> caches;  ///< from the nearest on
+};
+
 /// All of a run.
 struct results {
     std::vector<measurement> measurements;      ///< in the order of the files and of their cases
+    std::optional<run_start> began;             ///< none if no file tells
     std::vector<peer_time> peers;               ///< in the order of the files
     std::map<std::string, std::string> missing; ///< peers that did not run, and why
 };
@@ -163,7 +178,10 @@ inline std::vector<measurement> read_measurements(std::filesystem::path const& f
     for (auto& [of, seconds, counters] : cases) {
         if (of.failure.empty()) {
             of.repetitions = seconds.size();
-            of.seconds = median(std::move(seconds));
+            of.seconds = median(seconds);
+            if (of.repetitions > 1 && of.seconds > 0) {
+                of.noise = median_deviation(std::move(seconds)) / of.seconds;
+            }
             for (auto& [counter, values] : counters) {
                 of.counters[counter] = median(std::move(values));
             }
@@ -173,8 +191,29 @@ inline std::vector<measurement> read_measurements(std::filesystem::path const& f
     return measurements;
 }
 
+/// What a file of --benchmark_out says of the run's beginning; nothing if its context has no date.
+inline std::optional<run_start> read_run_start(std::filesystem::path const& file) {
+    auto const json = detail::read_json(file);
+    auto const context = json.is_object() ? json.value("context", nlohmann::json::object()) : nlohmann::json();
+    if (!context.is_object() || !context.contains("date")) {
+        return std::nullopt;
+    }
+    run_start start;
+    start.date = detail::field<std::string>(file, context, "date");
+    if (auto const load = context.value("load_avg", std::vector<double>()); !load.empty()) {
+        start.load = load.front();
+    }
+    for (auto const& entry : context.value("caches", nlohmann::json::array())) {
+        auto const level = detail::field<int>(file, entry, "level");
+        auto const type = detail::field<std::string>(file, entry, "type");
+        start.caches.push_back({"L" + std::to_string(level) + (type == "Unified" ? "" : " " + type),
+                                detail::field<double>(file, entry, "size")});
+    }
+    return start;
+}
+
 /// The targets in a file: a list of {"says": <words>, "cases": <regular expression>, "measure": <counter,
-/// ratio_to_peer or ratio_to_case>, "at_least" or "at_most": <number>}. With "peer", a regular expression, a ratio is
+/// seconds, ratio_to_peer or ratio_to_case>, "at_least" or "at_most": <number>}. With "peer", a regular expression, a ratio is
 /// to such peers alone; a ratio_to_case is to "case", in which $1 is the first group of "cases". Throws file_error if
 /// it is no such file.
 inline std::vector<target> read_targets(std::filesystem::path const& file) {
@@ -218,6 +257,10 @@ inline results read_results(std::filesystem::path const& folder) {
     for (auto const& file : files_in(folder)) {
         auto measurements = read_measurements(file);
         std::move(measurements.begin(), measurements.end(), std::back_inserter(all.measurements));
+        auto start = read_run_start(file);
+        if (start && (!all.began || start->date < all.began->date)) {
+            all.began = std::move(start);
+        }
     }
     if (all.measurements.empty()) {
         throw file_error(folder.string() + ": holds no measurement, expected files of --benchmark_out");

@@ -1,50 +1,60 @@
 // SPDX-License-Identifier: MIT
-// What the figures of a run are true of: the processor, its threads, the compiler and its flags.
+// What the figures of a run are true of: the processor, its memory, the compiler, the vectors and the packages.
 #pragma once
 
-#include <genrender/core/linalg.hpp>
+#include <benchmarks/support/benchmark_results.hpp>
 
-#include <fstream>
+#include <cstddef>
+#include <istream>
+#include <optional>
+#include <set>
 #include <string>
-#include <thread>
-#include <utility>
+#include <vector>
 
 namespace genrender::benchmarks {
 
-/// The machine that runs this program and what compiled it.
+/// The machine of a run and what compiled its programs.
 struct machine {
     std::string processor;
-    unsigned threads = 0;
+    std::size_t cores = 0;   ///< that have registers of their own
+    std::size_t threads = 0; ///< that run at once, and that loops use unless told otherwise
+    double memory_bytes = 0;
     std::string compiler;
-    std::string flags;
-    std::string vectors; ///< the widest instruction set that Eigen uses
+    std::string flags;                       ///< of the build
+    std::string vector_target;               ///< the kernels' own choice
+    std::vector<std::string> vector_targets; ///< among which they choose, rising
+    std::vector<std::string> libraries;      ///< with their versions
+    std::vector<std::string> peers;          ///< with their versions
+    std::optional<run_start> began;
 };
 
 namespace detail {
 
-/// The processor's name as Linux tells it.
-inline std::string processor_name() {
-    std::ifstream stream("/proc/cpuinfo");
-    for (std::string line; std::getline(stream, line);) {
-        if (line.starts_with("model name") && line.find(": ") != std::string::npos) {
-            return line.substr(line.find(": ") + 2);
+/// What Linux tells of the processors: the name, and the number of cores.
+struct processors {
+    std::string name = "unknown processor";
+    std::size_t cores = 0;
+};
+
+inline processors read_processors(std::istream& cpuinfo) {
+    processors found;
+    std::set<std::string> cores;
+    std::string package;
+    for (std::string line; std::getline(cpuinfo, line);) {
+        auto const colon = line.find(": ");
+        auto const value = colon == std::string::npos ? "" : line.substr(colon + 2);
+        if (line.starts_with("model name")) {
+            found.name = value;
+        } else if (line.starts_with("physical id")) {
+            package = value;
+        } else if (line.starts_with("core id")) {
+            cores.insert(package + " " + value);
         }
     }
-    return "unknown processor";
+    found.cores = cores.size();
+    return found;
 }
 
 } // namespace detail
-
-/// This machine; `flags` are those of the build.
-inline machine this_machine(std::string flags) {
-#ifdef __clang__
-    std::string const compiler = __VERSION__;
-#else
-    std::string const compiler = "g++ " __VERSION__;
-#endif
-    std::string const vectors = Eigen::SimdInstructionSetsInUse();
-    return {detail::processor_name(), std::thread::hardware_concurrency(), compiler, std::move(flags),
-            vectors.substr(0, vectors.find(','))};
-}
 
 } // namespace genrender::benchmarks

@@ -13,8 +13,8 @@ namespace genrender::examples {
 
 /// A row of the paper's tables: CLIP embeddings, Stable Diffusion 1.5, scenes and prompts of its own.
 struct paper_row {
-    std::string_view method; ///< as in compared_methods, noise included; Gen1 is proprietary and quoted alone
-    std::string_view name;   ///< as the paper writes it
+    std::string_view method;           ///< as in compared_methods, noise included; Gen1 is proprietary and quoted alone
+    std::string_view name;             ///< as the paper writes it
     std::array<double, 5> consistency; ///< frame consistency at `intervals` (table 2; the first is table 1's)
     double fidelity;                   ///< prompt fidelity (table 1)
 };

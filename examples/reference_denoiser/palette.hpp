@@ -67,9 +67,12 @@ inline hue_and_colour draw_first(random_draw& draw, std::optional<std::size_t> w
 inline hue_and_colour draw_second(random_draw& draw) {
     auto const hue = draw.uniform(0, 1);
     switch (draw.below(3)) {
-    case 0: return {hue, colour_of(hue, draw.uniform(0.3f, 0.8f), draw.uniform(0.08f, 0.28f))};
-    case 1: return {hue, colour_of(hue, draw.uniform(0.02f, 0.2f), draw.uniform(0.88f, 1))};
-    default: return {hue, colour_of(hue, draw.uniform(0.5f, 0.9f), draw.uniform(0.5f, 0.95f))};
+    case 0:
+        return {hue, colour_of(hue, draw.uniform(0.3f, 0.8f), draw.uniform(0.08f, 0.28f))};
+    case 1:
+        return {hue, colour_of(hue, draw.uniform(0.02f, 0.2f), draw.uniform(0.88f, 1))};
+    default:
+        return {hue, colour_of(hue, draw.uniform(0.5f, 0.9f), draw.uniform(0.5f, 0.95f))};
     }
 }
 

@@ -3,7 +3,10 @@
 // evaluation.hpp and reference.hpp.
 #pragma once
 
-#include <genrender/core/chunked_memory.hpp>
+#if __cplusplus <= 201703L && !(defined(_MSVC_LANG) && _MSVC_LANG > 201703L)
+#error "genrender is C++20: compile with -std=c++20 or later"
+#endif
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/half_precision.hpp>

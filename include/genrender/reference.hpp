@@ -13,7 +13,6 @@
 #include <genrender/reference/embedded_hints.hpp>
 #include <genrender/reference/encoded_frames.hpp>
 #include <genrender/reference/feature_maps.hpp>
-#include <genrender/reference/feature_memory.hpp>
 #include <genrender/reference/feed_forward.hpp>
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/group_norm.hpp>

@@ -101,12 +101,12 @@ inline void check_half_rows() {
         brain(1, c) = static_cast<bfloat16>(0.37F * static_cast<float>(c) - 3);
     }
     std::vector<float> row(37);
-    read_rows(row.data(), strided_view<float16 const, 2>(half), 1, 1);
+    read_rows(row.data(), to_bits_view(std::as_const(half).view()), 1, 1);
     for (std::size_t c = 0; c < 37; ++c) {
         CHECK(row[c] == static_cast<float>(half(1, c)));
     }
     std::vector<double> wide(37);
-    read_rows(wide.data(), strided_view<bfloat16 const, 2>(brain), 1, 1);
+    read_rows(wide.data(), to_bits_view(std::as_const(brain).view()), 1, 1);
     for (std::size_t c = 0; c < 37; ++c) {
         CHECK(wide[c] == static_cast<double>(brain(1, c)));
     }

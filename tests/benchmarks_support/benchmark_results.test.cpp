@@ -44,6 +44,7 @@ TEST_SUITE("benchmarks_support/benchmark_results") {
         CHECK(mix.shape() == "tokens:64/channels:320");
         CHECK(mix.seconds == doctest::Approx(0.003));
         CHECK(mix.repetitions == 3);
+        CHECK(mix.noise.value() == doctest::Approx(2.0 / 3)); // 1, 3 and 5 ms
         CHECK(mix.counters.size() == 1);
         CHECK(mix.counter("share_of_floor") == 0.6);
         CHECK_FALSE(mix.counter("speedup"));
@@ -51,9 +52,41 @@ TEST_SUITE("benchmarks_support/benchmark_results") {
     }
 
     TEST_CASE("a kernel without arguments has no shape") {
-        measurement const of{"noise", 1, 1, {}, "", ""};
+        measurement const of{"noise", 1, 1, {}, "", "", {}};
         CHECK(of.kernel() == "noise");
         CHECK(of.shape() == "");
+    }
+
+    TEST_CASE("one repetition has no noise") {
+        scratch_folder const folder;
+        CHECK_FALSE(read_measurements(folder.write("mix.json", file_of(repetition("mix", 1)))).front().noise);
+    }
+
+    TEST_CASE("the run began with the first of its programs") {
+        scratch_folder const folder;
+        auto const context = [](std::string const& date, std::string const& load) {
+            return R"({"context": {"date": "2026-11-27T)" + date + R"(", "load_avg": [)" + load + R"(], "caches": [)" +
+                   R"({"type": "Data", "level": 1, "size": 32768, "num_sharing": 1}, )" +
+                   R"({"type": "Unified", "level": 2, "size": 1048576, "num_sharing": 1}]}, "benchmarks": [)" +
+                   repetition("mix", 1) + "]}";
+        };
+        folder.write("a.json", context("17:31:10", "1.5, 0.5"));
+        folder.write("b.json", context("17:30:59", "0.25, 0.5"));
+        folder.write("c.json", file_of(repetition("add", 1)));
+        auto const began = read_results(folder.path()).began;
+        REQUIRE(began);
+        CHECK(began->date == "2026-11-27T17:30:59");
+        CHECK(began->load == 0.25);
+        REQUIRE(began->caches.size() == 2);
+        CHECK(began->caches[0].name == "L1 Data");
+        CHECK(began->caches[0].bytes == 32768);
+        CHECK(began->caches[1].name == "L2");
+    }
+
+    TEST_CASE("a run of which no file tells the beginning has none") {
+        scratch_folder const folder;
+        folder.write("a.json", file_of(repetition("mix", 1)));
+        CHECK_FALSE(read_results(folder.path()).began);
     }
 
     TEST_CASE("a case that could not run says why") {

@@ -20,12 +20,28 @@ target share_of_mix(double at_least) {
 results three_cases() {
     results all;
     all.measurements = {
-        {"mix/tokens:64", 2e-3, 3, {{"share_of_floor", 0.8}, {"bytes_per_second", 2e9}}, "copy", ""},
-        {"mix/tokens:128", 4e-3, 3, {{"share_of_floor", 0.6}, {"FLOP/s", 3e10}, {"speed_up", 1.9}}, "copy", ""},
-        {"plan", 0, 0, {}, "", "no memory"}};
+        {"mix/tokens:64", 2e-3, 3, {{"share_of_floor", 0.8}, {"bytes_per_second", 2e9}}, "copy", "", 0.0125},
+        {"mix/tokens:128", 4e-3, 1, {{"share_of_floor", 0.6}, {"FLOP/s", 3e10}, {"speed_up", 1.9}}, "copy", "", {}},
+        {"plan", 0, 0, {}, "", "no memory", {}}};
     all.peers = {{"mix/tokens:128", "NumPy", 8e-3}, {"mix/tokens:256", "NumPy", 1}};
     all.missing = {{"engine", "No module named 'engine'"}};
     return all;
+}
+
+machine a_machine() {
+    machine on;
+    on.processor = "a processor";
+    on.cores = 1;
+    on.threads = 2;
+    on.memory_bytes = 3.0 * 1024 * 1024 * 1024;
+    on.compiler = "a compiler";
+    on.flags = "-O3";
+    on.vector_target = "v3";
+    on.vector_targets = {"baseline", "v3"};
+    on.libraries = {"Eigen 3", "xtensor 0.24"};
+    on.peers = {"NumPy 2"};
+    on.began = run_start{"2026-11-27", 0.25, {{"L1 Data", 32768}, {"L2", 1048576}}};
+    return on;
 }
 
 } // namespace
@@ -48,6 +64,15 @@ TEST_SUITE("benchmarks_support/benchmark_table") {
         CHECK(verdict{"share", 0.7, 0.7, false}.is_met());
         CHECK_FALSE(verdict{"share", 0.8, 0.7, false}.is_met());
         CHECK_FALSE(verdict{"share", std::nan(""), 0.7, true}.is_met());
+    }
+
+    TEST_CASE("a target may be of the time itself") {
+        target const in_time{std::regex("^mix"), "in 3 ms", "seconds", std::regex(""), "", 3e-3, false};
+        auto const judged = judge(three_cases(), std::vector{in_time});
+        REQUIRE(judged.cases[0].verdicts.size() == 1);
+        CHECK(judged.cases[0].verdicts[0].value == 2e-3);
+        CHECK(judged.cases[0].verdicts[0].is_met());
+        CHECK_FALSE(judged.cases[1].verdicts[0].is_met());
     }
 
     TEST_CASE("a peer's ratio is its time over ours") {
@@ -91,22 +116,36 @@ TEST_SUITE("benchmarks_support/benchmark_table") {
 
     TEST_CASE("the table has a row a case and tells below it what is missing") {
         auto const judged = judge(three_cases(), std::vector{share_of_mix(0.7)});
-        CHECK(markdown_table(judged, {"a processor", 2, "a compiler", "-O3", "SSE"}) ==
-              "| kernel | shape | time | rate | share of floor | target | ratio to peer |\n"
-              "|---|---|---|---|---|---|---|\n"
-              "| mix | tokens 64 | 2.00 ms | 2.00 GB/s | 0.800 of copy | met: 0.800 ≥ 0.700, share of floor | - |\n"
-              "| mix | tokens 128 | 4.00 ms | 30.0 GFLOP/s; speed up 1.90 | 0.600 of copy |"
-              " missed: 0.600 ≥ 0.700, share of floor | 2.00 NumPy |\n"
-              "| plan | - | failed: no memory | - | - | - | - |\n"
-              "\n"
-              "Medians of 3 repetitions on a processor, 2 threads, a compiler, -O3 (SSE).\n"
-              "A share of 1 is as fast as the floor, which is timed in turn with the kernel; a ratio above 1 is faster "
-              "than the peer.\n"
-              "\n"
-              "Targets: 1 met, 1 missed.\n"
-              "- Beside NumPy: faster in 1 of 1 cases, ratios 2.00 to 2.00\n"
-              "- A peer's case that we have not: mix/tokens:256\n"
-              "- Peer missing: engine (No module named 'engine')\n");
+        CHECK(
+            markdown_table(judged, a_machine()) ==
+            "| run | |\n"
+            "|---|---|\n"
+            "| processor | a processor, 1 cores, 2 threads |\n"
+            "| caches | L1 Data 32 KiB, L2 1 MiB |\n"
+            "| memory | 3 GiB |\n"
+            "| compiler | a compiler, -O3 |\n"
+            "| vector target | v3 of baseline, v3 |\n"
+            "| libraries | Eigen 3, xtensor 0.24 |\n"
+            "| peers | NumPy 2 |\n"
+            "| began | 2026-11-27, load of the minute before 0.250 |\n"
+            "\n"
+            "| kernel | shape | time | noise | rate | share of floor | target | ratio to peer |\n"
+            "|---|---|---|---|---|---|---|---|\n"
+            "| mix | tokens 64 | 2.00 ms | 1.25 % (3) | 2.00 GB/s | 0.800 of copy |"
+            " met: 0.800 ≥ 0.700, share of floor | - |\n"
+            "| mix | tokens 128 | 4.00 ms | - | 30.0 GFLOP/s; speed up 1.90 | 0.600 of copy |"
+            " missed: 0.600 ≥ 0.700, share of floor | 2.00 NumPy |\n"
+            "| plan | - | failed: no memory | - | - | - | - | - |\n"
+            "\n"
+            "Times are medians of repetitions, by the clock on the wall; half of the repetitions, whose number stands "
+            "in brackets, lie within the noise around them.\n"
+            "A share of 1 is as fast as the floor, which is timed in turn with the kernel; a ratio above 1 is faster "
+            "than the peer.\n"
+            "\n"
+            "Targets: 1 met, 1 missed.\n"
+            "- Beside NumPy: faster in 1 of 1 cases, ratios 2.00 to 2.00\n"
+            "- A peer's case that we have not: mix/tokens:256\n"
+            "- Peer missing: engine (No module named 'engine')\n");
     }
 
     TEST_CASE("several peers of a case stand side by side in the order of their files") {
@@ -116,7 +155,7 @@ TEST_SUITE("benchmarks_support/benchmark_table") {
                      {"mix/tokens:128", "ONNX Runtime 1", 6e-3}};
         target const no_slower{std::regex("^mix"), "no slower", "ratio_to_peer", std::regex("^ONNX"), "", 1, true};
         auto const judged = judge(all, std::vector{no_slower});
-        machine const on{"a processor", 2, "a compiler", "-O3", "SSE"};
+        auto const on = a_machine();
         auto const table = markdown_table(judged, on);
         CHECK(
             table.find("| missed: 0.500 ≥ 1.00, ratio to ONNX Runtime 1 | 1.50 PyTorch 2; 0.500 ONNX Runtime 1 |\n") !=
@@ -130,6 +169,27 @@ TEST_SUITE("benchmarks_support/benchmark_table") {
         CHECK(json["cases"][0]["peers"][1]["peer"] == "ONNX Runtime 1");
     }
 
+    TEST_CASE("a run of a part says what it is a part of and lists no target of the rest") {
+        auto judged = judge(three_cases(),
+                            std::vector<target>{{std::regex("^no"), "no row", "time", std::regex(""), "", 1, true}});
+        CHECK(markdown_table(judged, a_machine()).find("- Not measured: no row\n") != std::string::npos);
+        judged.filter = "mix";
+        auto const table = markdown_table(judged, a_machine());
+        CHECK(table.find("Not measured") == std::string::npos);
+        CHECK(table.find("- Only rows that match 'mix' were measured.\n") != std::string::npos);
+        CHECK(to_json(judged, a_machine())["filter"] == "mix");
+    }
+
+    TEST_CASE("what is not known of a run is not in its head") {
+        machine on;
+        on.processor = "p";
+        auto const table = markdown_table(judge(three_cases(), {}), on);
+        CHECK(table.find("| vector target |") == std::string::npos);
+        CHECK(table.find("| caches |") == std::string::npos);
+        CHECK(table.find("| peers |") == std::string::npos);
+        CHECK(table.find("| began |") == std::string::npos);
+    }
+
     TEST_CASE("a counter's name may tell its unit") {
         CHECK(detail::counter_text("held_bytes", 6.32e7) == "held 63.2 MB");
         CHECK(detail::counter_text("growth_a_frame_bytes", 12) == "growth a frame 12.0 B");
@@ -138,8 +198,23 @@ TEST_SUITE("benchmarks_support/benchmark_table") {
     }
 
     TEST_CASE("the JSON holds every figure in full") {
-        auto const json = to_json(judge(three_cases(), std::vector{share_of_mix(0.7)}), {"p", 2, "c", "-O3", "SSE"});
+        auto const json = to_json(judge(three_cases(), std::vector{share_of_mix(0.7)}), a_machine());
+        CHECK(json["machine"]["processor"] == "a processor");
+        CHECK(json["machine"]["cores"] == 1);
         CHECK(json["machine"]["threads"] == 2);
+        CHECK(json["machine"]["memory_bytes"] == 3221225472.0);
+        CHECK(json["machine"]["compiler"] == "a compiler");
+        CHECK(json["machine"]["flags"] == "-O3");
+        CHECK(json["machine"]["vector_target"] == "v3");
+        CHECK(json["machine"]["vector_targets"] == nlohmann::json{"baseline", "v3"});
+        CHECK(json["machine"]["libraries"] == nlohmann::json{"Eigen 3", "xtensor 0.24"});
+        CHECK(json["machine"]["peers"] == nlohmann::json{"NumPy 2"});
+        CHECK(json["machine"]["date"] == "2026-11-27");
+        CHECK(json["machine"]["load"] == 0.25);
+        CHECK(json["machine"]["caches"][1]["bytes"] == 1048576);
+        CHECK(json["cases"][0]["noise"] == 0.0125);
+        CHECK_FALSE(json["cases"][1].contains("noise"));
+        CHECK_FALSE(json.contains("filter"));
         CHECK(json["cases"].size() == 3);
         CHECK(json["cases"][1]["name"] == "mix/tokens:128");
         CHECK(json["cases"][1]["counters"]["FLOP/s"] == 3e10);

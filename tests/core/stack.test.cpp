@@ -5,6 +5,10 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <new>
 #include <type_traits>
 #include <utility>
 
@@ -31,6 +35,50 @@ TEST_SUITE("core/stack") {
         second(1) = 5;
         CHECK(first(1) == 0);
         CHECK(second.view().data() != first.view().data());
+    }
+
+    TEST_CASE_TEMPLATE("a block begins at a cache line", Real, float, double, std::uint8_t) {
+        for (std::size_t const size : {1U, 3U, 1000U}) {
+            auto const memory = stack<Real, 1>::uninitialized({size});
+            CHECK(memory.size() == size);
+            CHECK(reinterpret_cast<std::uintptr_t>(memory.data()) % 64 == 0);
+            stack<Real, 1> const zeros({size});
+            CHECK(reinterpret_cast<std::uintptr_t>(zeros.data()) % 64 == 0);
+        }
+        CHECK(stack<Real, 1>().size() == 0);
+    }
+
+    TEST_CASE("copies own their numbers and moves take them along") {
+        auto a = stack<float, 1>::uninitialized({2});
+        a.data()[0] = 1;
+        a.data()[1] = 2;
+        auto b = a;
+        b.data()[0] = 5;
+        CHECK(a.data()[0] == 1);
+        CHECK(b.data()[1] == 2);
+        auto const* const where = b.data();
+        a = std::move(b);
+        CHECK(a.data() == where);
+        CHECK(a.data()[0] == 5);
+        auto const c = std::move(a);
+        CHECK(c.data() == where);
+        CHECK(c.size() == 2);
+        CHECK(a.size() == 0); // a stack of none, not of freed elements
+        CHECK(a.data() == nullptr);
+    }
+
+    TEST_CASE("elements may be records and a stack of more bytes than there are is refused") {
+        struct record {
+            std::uint32_t token;
+            float quality;
+        };
+        stack<record, 1> records({2});
+        CHECK(records(1).token == 0);
+        CHECK(records(1).quality == 0);
+        auto const half = std::numeric_limits<std::size_t>::max() / 2 + 1;
+        CHECK_THROWS_AS((stack<double, 1>({half})), std::bad_alloc);
+        CHECK_THROWS_AS((stack<float, 2>({half, half})), std::bad_alloc);
+        CHECK((stack<float, 3>({half, half, 0})).size() == 0);
     }
 
     TEST_CASE("an empty stack has an empty view") {

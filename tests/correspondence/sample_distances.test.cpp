@@ -30,7 +30,8 @@ using dimension = std::integral_constant<std::size_t, D>;
 } // namespace
 
 TEST_SUITE("correspondence/sample_distances") {
-    TEST_CASE_TEMPLATE("what is found within a radius is what a search through all pixels finds", Dim, dimension<2>, dimension<3>) {
+    TEST_CASE_TEMPLATE("what is found within a radius is what a search through all pixels finds", Dim, dimension<2>,
+                       dimension<3>) {
         at_each_vector_target([] { GENRENDER_KERNEL(testing, check_search<Dim>)(); });
     }
 }

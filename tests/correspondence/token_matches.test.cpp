@@ -2,6 +2,8 @@
 // Matches are made once as long as there is room, and again when there is none.
 #include <genrender/correspondence/token_matches.hpp>
 
+#include "../support/counted_memory.hpp"
+
 #include <genrender/core/parallel.hpp>
 
 #include <doctest/doctest.h>
@@ -10,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 using namespace genrender;
 
@@ -71,9 +74,58 @@ TEST_SUITE("correspondence/token_matches") {
             CHECK(kept.byte_count() == 500 * token_matches::bytes_of(2));
         }
         CHECK(last->tokens[0] == 499);
-        CHECK(kept_matches::expected_bytes(500, 2, 1U << 20) == chunked_memory::chunk_bytes);
-        CHECK(kept_matches::expected_bytes(100000, 2, 1U << 20) == 2 * chunked_memory::chunk_bytes);
+        CHECK(kept_matches::expected_bytes(500, 2, 1U << 20) == kept_matches::chunk_bytes);
+        CHECK(kept_matches::expected_bytes(100000, 2, 1U << 20) == 2 * kept_matches::chunk_bytes);
         CHECK(kept_matches::expected_bytes(500, 2, 0) == 0);
+    }
+
+    TEST_CASE("many pairs of many sizes keep what was written and lie in chunks without holes") {
+        for (std::size_t const tokens : {1U, 37U, 5000U, 70000U}) {
+            std::size_t const pairs = 40;
+            kept_matches kept(pairs * token_matches::bytes_of(tokens));
+            std::vector<std::shared_ptr<token_matches const>> all;
+            auto const before = testing::counted_memory::live.load();
+            for (std::uint32_t frame = 0; frame < pairs; ++frame) {
+                all.push_back(kept.of({frame}, {1}, [&] {
+                    token_matches matches(tokens);
+                    for (std::size_t t = 0; t < tokens; ++t) {
+                        matches.tokens[t] = frame + static_cast<std::uint32_t>(t);
+                        matches.is_shown[t] = static_cast<std::uint8_t>((frame + t) % 2);
+                        matches.qualities[t] = static_cast<float>(t % 100);
+                    }
+                    return matches;
+                }));
+            }
+            auto const taken = testing::counted_memory::live.load() - before;
+            CHECK(kept.byte_count() == pairs * token_matches::bytes_of(tokens));
+            for (std::uint32_t frame = 0; frame < pairs; ++frame) {
+                auto const& matches = *all[frame];
+                CHECK(reinterpret_cast<std::uintptr_t>(matches.tokens.data()) % alignof(std::uint32_t) == 0);
+                CHECK(reinterpret_cast<std::uintptr_t>(matches.qualities.data()) % alignof(float) == 0);
+                bool keeps_all = matches.tokens.size() == tokens;
+                for (std::size_t t = 0; t < tokens; ++t) {
+                    keeps_all = keeps_all && matches.tokens[t] == frame + t && matches.is_shown[t] == (frame + t) % 2 &&
+                                matches.qualities[t] == static_cast<float>(t % 100);
+                }
+                CHECK(keeps_all);
+            }
+            // All in whole chunks but for the links between pairs and the handles here.
+            auto const planned = kept_matches::expected_bytes(pairs, tokens, ~std::size_t{0});
+            CHECK(taken <= planned + pairs * 150);
+        }
+    }
+
+    TEST_CASE("a pair that is larger than a chunk has one of its own") {
+        kept_matches kept(~std::size_t{0});
+        auto const tokens = kept_matches::chunk_bytes;
+        auto const first = kept.of({0}, {1}, [&] { return token_matches(tokens); });
+        auto const second = kept.of({1}, {0}, [&] { return matches_of(5); });
+        auto const third = kept.of({2}, {0}, [&] { return matches_of(6); });
+        CHECK(first->tokens.size() == tokens);
+        CHECK(first->tokens[tokens - 1] == 0);
+        CHECK(first->tokens[0] == 0);
+        CHECK(second->tokens[0] == 5);
+        CHECK(third->tokens[0] == 6);
     }
 
     TEST_CASE("threads get equal matches") {

@@ -109,8 +109,8 @@ TEST_SUITE("pipeline/memory_plan") {
         CHECK(plan_memory(run, settings).bytes.latents == 2 * plan.bytes.latents);
         // Two steps draw six keyframes or fewer; their matches with 20 frames fit into one chunk.
         CHECK(plan.bytes.correspondence == footprint_map<2>::expected_bytes(20, 6));
-        CHECK(plan.bytes.matching > chunked_memory::chunk_bytes);
-        CHECK(plan.bytes.matching <= chunked_memory::chunk_bytes + 6 * kept_frame<2>::expected_bytes(384, 64));
+        CHECK(plan.bytes.matching > kept_matches::chunk_bytes);
+        CHECK(plan.bytes.matching <= kept_matches::chunk_bytes + 6 * kept_frame<2>::expected_bytes(384, 64));
         settings.correspondence.kind = correspondence_kind::texel_grid;
         CHECK(plan_memory(run, settings).bytes.matching == 0);
     }

@@ -2,7 +2,7 @@
 // Tests of the architecture in diffusers' words.
 #include <genrender/reference/diffusers_config.hpp>
 
-#include "golden.hpp"
+#include "golden_case.hpp"
 #include "golden_network.hpp"
 #include "small_networks.hpp"
 
@@ -29,7 +29,7 @@ struct config_folder {
     nlohmann::json controlnet;
     nlohmann::json scheduler;
 
-    explicit config_folder(golden_case const& golden = golden_cases[1])
+    explicit config_folder(golden_case const& golden = golden_cases()[1])
         : unet(nlohmann::json::parse(golden.unet_json)), controlnet(nlohmann::json::parse(golden.controlnet_json)),
           scheduler(scheduler_json(golden_configs()[1])) {
         std::filesystem::create_directories(folder.path());
@@ -72,7 +72,7 @@ TEST_SUITE("reference/diffusers_config") {
     TEST_CASE("what diffusers writes for a network is what was written in C++") {
         auto const configs = golden_configs();
         for (std::size_t c = 0; c < configs.size(); ++c) {
-            config_folder files(golden_cases[c]);
+            config_folder files(golden_cases()[c]);
             files.scheduler = scheduler_json(configs[c]);
             CHECK(description(files.read()) == description(configs[c]));
         }

@@ -2,7 +2,7 @@
 // Tests of folders in diffusers' layout.
 #include <genrender/reference/diffusers_folder.hpp>
 
-#include "golden.hpp"
+#include "golden_case.hpp"
 #include "golden_network.hpp"
 #include "small_networks.hpp"
 
@@ -82,7 +82,7 @@ TEST_SUITE("reference/diffusers_folder") {
 
     TEST_CASE("shards are loaded as one network") {
         test_folder const folder;
-        auto const& golden = golden_cases[2];
+        auto const& golden = golden_cases()[2];
         auto const config = golden_configs()[2];
         write_golden_folder(folder.path, golden, config);
         // Divide the UNet in two.
@@ -155,7 +155,7 @@ TEST_SUITE("reference/diffusers_folder") {
 
     TEST_CASE("an architecture that the weights do not have is told by a tensor's name") {
         test_folder const folder;
-        auto const& golden = golden_cases[2];
+        auto const& golden = golden_cases()[2];
         write_golden_folder(folder.path, golden, golden_configs()[2]);
         // As wide as can be written: no memory is asked for before the shapes agree.
         auto json = nlohmann::json::parse(golden.unet_json);

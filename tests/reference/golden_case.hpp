@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-// One network of golden.hpp: its description in diffusers' words, its inputs and what diffusers makes of them.
+// Networks in diffusers' words, their inputs and what diffusers makes of them: data/diffusers.json, which
+// make_golden.py writes.
 #pragma once
+
+#include "../support/golden_file.hpp"
 
 #include <genrender/core/index.hpp>
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 namespace genrender::testing {
 
@@ -19,15 +23,39 @@ struct golden_output {
 
 /// A UNet and its ControlNet. Weights and inputs are golden_values of their names.
 struct golden_case {
-    char const* name;
+    std::string name;
     grid_extents grid;           ///< of the latents
     std::size_t tokens;          ///< of the prompt
     double t;                    ///< time
     double scale;                ///< of what the ControlNet adds
-    char const* unet_json;       ///< config.json as diffusers writes it
-    char const* controlnet_json; ///< config.json as diffusers writes it
+    std::string unet_json;       ///< config.json as diffusers writes it
+    std::string controlnet_json; ///< config.json as diffusers writes it
     golden_output alone;         ///< without the ControlNet
     golden_output controlled;    ///< with it
 };
+
+/// The tiny reference network, a small Stable Diffusion 1.5 and a small 2.x.
+inline std::array<golden_case, 3> const& golden_cases() {
+    static std::array<golden_case, 3> const cases = [] {
+        auto const output = [](nlohmann::json const& from) {
+            return golden_output{from.at("step").get<std::size_t>(), from.at("range").get<double>(),
+                                 from.at("single").get<std::array<double, 96>>(),
+                                 from.at("precise").get<std::array<double, 96>>()};
+        };
+        auto const file = golden_file("diffusers.json");
+        std::array<golden_case, 3> read;
+        for (std::size_t c = 0; c < read.size(); ++c) {
+            auto const& from = file.at("cases").at(c);
+            auto const grid = from.at("grid").get<std::array<std::size_t, 2>>();
+            read[c] = {from.at("name").get<std::string>(),   {grid[0], grid[1]},
+                       from.at("tokens").get<std::size_t>(), from.at("t").get<double>(),
+                       from.at("scale").get<double>(),       from.at("unet").dump(2),
+                       from.at("controlnet").dump(2),        output(from.at("alone")),
+                       output(from.at("controlled"))};
+        }
+        return read;
+    }();
+    return cases;
+}
 
 } // namespace genrender::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The weights and inputs of golden.hpp, made here as make_golden.py makes them.
+// The weights and inputs of the golden cases, made here as data/golden_data.py makes them.
 #pragma once
 
 #include "golden_case.hpp"
@@ -53,7 +53,7 @@ stack<Real, Rank> golden_stack(std::string const& name, std::array<std::size_t, 
 
 /// Writes `folder`/config.json and, beside it, every tensor that the network takes.
 template <class Network>
-void write_golden_model(std::filesystem::path const& folder, unet_config const& config, char const* json,
+void write_golden_model(std::filesystem::path const& folder, unet_config const& config, std::string const& json,
                         std::string const& prefix) {
     auto shapes = weights<float>::seeded(1, "");
     site_list sites({8, 8});
@@ -81,14 +81,14 @@ void write_golden_model(std::filesystem::path const& folder, unet_config const& 
 /// Writes the networks of a case in diffusers' layout; `config` must be the one that its texts describe.
 inline void write_golden_folder(std::filesystem::path const& folder, golden_case const& golden,
                                 unet_config const& config) {
-    auto const name = std::string(golden.name);
+    auto const& name = golden.name;
     write_golden_model<unet<float>>(folder / "unet", config, golden.unet_json, name + ".unet.");
     write_golden_model<controlnet<float>>(folder / "controlnet", config, golden.controlnet_json, name + ".controlnet.");
     std::filesystem::create_directories(folder / "scheduler");
     std::ofstream(folder / "scheduler" / "scheduler_config.json") << scheduler_json(config);
 }
 
-/// The configuration of each case as it is written in C++, in the order of golden_cases.
+/// The configuration of each case as it is written in C++, in the order of golden_cases().
 inline std::array<unet_config, 3> golden_configs() {
     unet_config small_sd15;
     small_sd15.in_channels = small_sd15.out_channels = 4;

@@ -1,42 +1,30 @@
 # SPDX-License-Identifier: MIT
-"""Writes golden.hpp: what the public package diffusers computes for the networks of the tests.
+"""Writes data/diffusers.json: what the public package diffusers computes for the networks of the tests.
 
 Needs Python 3.10 or later with PyTorch (any recent version, CPU only) and diffusers 0.42.1:
 
     pip install torch numpy diffusers==0.42.1
     python3 tests/reference/make_golden.py
 
-The tests compile the constants and never run Python. Weights and inputs are the numbers of golden_network.hpp:
-scrambled addresses, which need no random number generator on either side. Each network runs twice: in single precision
+The tests read the file and never run Python. Weights and inputs are the numbers of golden_network.hpp: scrambled
+addresses, which need no random number generator on either side. Each network runs twice: in single precision
 as diffusers is, and in double precision with the sinusoids of time in double too, which diffusers always makes in
 single.
 """
 
+import json
 import math
 import pathlib
+import sys
 
 import diffusers
-import numpy
 import torch
 from diffusers import ControlNetModel, UNet2DConditionModel
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "data"))
+from golden_data import tensor, weight_scale, write  # noqa: E402
+
 KEPT = 96  # elements of an output
-
-
-def values(name, count):
-    """Numbers in [-1, 1): the scrambled sum (splitmix64) of a hash of the name and the index."""
-    begin = 0xCBF29CE484222325
-    for byte in name.encode():
-        begin = ((begin ^ byte) * 0x100000001B3) % 2**64
-    x = numpy.uint64(begin) + numpy.arange(count, dtype=numpy.uint64) * numpy.uint64(0x9E3779B97F4A7C15)
-    x = (x ^ (x >> numpy.uint64(30))) * numpy.uint64(0xBF58476D1CE4E5B9)
-    x = (x ^ (x >> numpy.uint64(27))) * numpy.uint64(0x94D049BB133111EB)
-    x ^= x >> numpy.uint64(31)
-    return (x >> numpy.uint64(40)).astype(numpy.float64) * 2.0**-23 - 1
-
-
-def tensor(name, *shape):
-    return torch.from_numpy(values(name, math.prod(shape))).reshape(shape)
 
 
 def fill(model, prefix):
@@ -45,8 +33,7 @@ def fill(model, prefix):
         if parameter.dim() == 1:
             x = 0.25 * x + (1 if name.endswith("weight") else 0)
         else:
-            # A power of two, so that the product is exact in float too.
-            x = x * 2.0 ** math.floor(math.log2(math.sqrt(3 / parameter[0].numel())))
+            x = x * weight_scale(parameter[0].numel())
         parameter.copy_(x)
 
 
@@ -70,14 +57,15 @@ def outputs(unet, control, z, t, prompt, hint, scale):
     return alone, unet(z, t, prompt, down_block_additional_residuals=down, mid_block_additional_residual=middle).sample
 
 
-def numbers(x):
-    step = (x.numel() - 1) // KEPT | 1  # odd, so that rows are not met at one column
-    texts = [repr(value) for value in x.double().flatten()[::step][:KEPT].tolist()]
-    return "{" + ",\n    ".join(", ".join(texts[i : i + 5]) for i in range(0, len(texts), 5)) + "}"
+def numbers(single, double):
+    """One golden_output."""
+    step = (double.numel() - 1) // KEPT | 1  # odd, so that rows are not met at one column
+    single, kept = (x.double().flatten()[::step][:KEPT].tolist() for x in (single, double))
+    return {"step": step, "range": float(double.max() - double.min()), "single": single, "precise": kept}
 
 
 def case(name, *, grid, tokens, t, scale, embedding, out_channels, unet=None, control=None, **shared):
-    """The source text of one golden_case."""
+    """One golden_case."""
     conditioning = {"conditioning_embedding_out_channels": embedding, **(control or {})}
     ups = [kind.replace("Down", "Up") for kind in reversed(shared["down_block_types"])]
     unet = UNet2DConditionModel(out_channels=out_channels, up_block_types=ups, **shared, **(unet or {})).eval()
@@ -95,11 +83,10 @@ def case(name, *, grid, tokens, t, scale, embedding, out_channels, unet=None, co
         for model in unet.double(), control.double():
             model.time_proj = DoubleTimesteps(shared["block_out_channels"][0])
         double = outputs(unet, control, *inputs)
-    fields = [f'"{name}"', f"{{{grid[0]}, {grid[1]}}}", str(tokens), repr(t), repr(scale)]
-    fields += [f'R"({model.to_json_string().strip()})"' for model in (unet, control)]
-    for one, two in zip(single, double):
-        fields.append(f"{{{(two.numel() - 1) // KEPT | 1}, {float(two.max() - two.min())!r},\n    {numbers(one)},\n    {numbers(two)}}}")
-    return "{" + ",\n    ".join(fields) + "}"
+    alone, controlled = (numbers(*both) for both in zip(single, double))
+    return {"name": name, "grid": grid, "tokens": tokens, "t": t, "scale": scale,
+            "unet": json.loads(unet.to_json_string()), "controlnet": json.loads(control.to_json_string()),
+            "alone": alone, "controlled": controlled}
 
 
 cases = [
@@ -118,23 +105,5 @@ cases = [
          norm_num_groups=4, down_block_types=("CrossAttnDownBlock2D",) * 2 + ("DownBlock2D",),
          use_linear_projection=True, transformer_layers_per_block=2),
 ]
-array = ",\n\n".join(cases)
-text = f"""// SPDX-License-Identifier: MIT
-// What diffusers {diffusers.__version__} computes. Written by make_golden.py: change that, not this.
-// clang-format off
-#pragma once
-
-#include "golden_case.hpp"
-
-#include <array>
-
-namespace genrender::testing {{
-
-/// Networks, what goes in and what comes out.
-inline constexpr std::array<golden_case, {len(cases)}> golden_cases{{{{
-{array}
-}}}};
-
-}} // namespace genrender::testing
-"""
-pathlib.Path(__file__).with_name("golden.hpp").write_text(text)
+write("diffusers.json", {"computed_by": f"diffusers {diffusers.__version__}",
+                         "written_by": "tests/reference/make_golden.py", "cases": cases})

@@ -2,7 +2,7 @@
 // Tests of the UNet, with and without the ControlNet beside it, against diffusers.
 #include <genrender/reference/unet.hpp>
 
-#include "golden.hpp"
+#include "golden_case.hpp"
 #include "golden_network.hpp"
 #include "small_networks.hpp"
 
@@ -40,9 +40,9 @@ double difference_share(feature_maps<Real> output, golden_output const& golden) 
 TEST_SUITE("reference/unet") {
     TEST_CASE_TEMPLATE("outputs equal those of diffusers with and without the ControlNet", Real, float, double) {
         auto const bound = std::is_same_v<Real, float> ? 1e-5 : 1e-12;
-        for (std::size_t c = 0; c < golden_cases.size(); ++c) {
-            auto const& golden = golden_cases[c];
-            auto const name = std::string(golden.name);
+        for (std::size_t c = 0; c < golden_cases().size(); ++c) {
+            auto const& golden = golden_cases()[c];
+            auto const& name = golden.name;
             CAPTURE(name);
             temporary_file const folder("golden");
             write_golden_folder(folder.path(), golden, golden_configs()[c]);
@@ -81,7 +81,7 @@ TEST_SUITE("reference/unet") {
     }
 
     TEST_CASE("the ControlNet of a golden network is heard") {
-        for (auto const& golden : golden_cases) {
+        for (auto const& golden : golden_cases()) {
             CHECK(std::abs(golden.alone.precise[0] - golden.controlled.precise[0]) > 1e-3 * golden.alone.range);
         }
     }

@@ -32,7 +32,9 @@ std::array<double, 3> shares(painted_surface const& surface) {
 } // namespace
 
 TEST_SUITE("reference_denoiser/surface_style") {
-    TEST_CASE("plain is the first colour everywhere") { CHECK(shares(painted(surface_style::plain, 0.2f))[0] == doctest::Approx(1)); }
+    TEST_CASE("plain is the first colour everywhere") {
+        CHECK(shares(painted(surface_style::plain, 0.2f))[0] == doctest::Approx(1));
+    }
 
     TEST_CASE("stripes and squares give both colours about half of the surface") {
         for (auto const style : {surface_style::stripes, surface_style::checker}) {

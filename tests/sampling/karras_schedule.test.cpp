@@ -38,17 +38,17 @@ TEST_SUITE("sampling/karras_schedule") {
     }
 
     TEST_CASE("[EDM eq. 5] the levels agree with k-diffusion") {
-        check_levels<double>(golden::karras_1, 1e-13);
-        check_levels<double>(golden::karras_2, 1e-13);
-        check_levels<double>(golden::karras_10, 1e-13);
-        check_levels<double>(golden::karras_50, 1e-13);
+        check_levels<double>(golden::karras(1), 1e-13);
+        check_levels<double>(golden::karras(2), 1e-13);
+        check_levels<double>(golden::karras(10), 1e-13);
+        check_levels<double>(golden::karras(50), 1e-13);
     }
 
     TEST_CASE("[EDM eq. 5] levels in single precision are as exact as single precision is") {
-        check_levels<float>(golden::karras_1, 1.2e-7);
-        check_levels<float>(golden::karras_2, 1.2e-7);
-        check_levels<float>(golden::karras_10, 1.2e-7);
-        check_levels<float>(golden::karras_50, 1.2e-7);
+        check_levels<float>(golden::karras(1), 1.2e-7);
+        check_levels<float>(golden::karras(2), 1.2e-7);
+        check_levels<float>(golden::karras(10), 1.2e-7);
+        check_levels<float>(golden::karras(50), 1.2e-7);
     }
 
     TEST_CASE_TEMPLATE("levels fall from sigma_max to sigma_min and then to 0", Real, float, double) {

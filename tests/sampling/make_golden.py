@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Writes golden.hpp: what the public package k-diffusion computes in double precision where the tests ask genrender.
+"""Writes data/k_diffusion.json: what the public package k-diffusion computes in double precision where the tests ask
+genrender.
 
 Needs Python 3.9 or later with PyTorch and SciPy (any recent version, CPU only), tqdm and k-diffusion 0.1.1.post1:
 
@@ -8,7 +9,7 @@ Needs Python 3.9 or later with PyTorch and SciPy (any recent version, CPU only),
     python3 tests/sampling/make_golden.py
 
 Only k_diffusion.sampling and k_diffusion.external are used; what else the package imports (torchvision, torchsde, ...)
-is replaced by empty stand-ins and need not be installed. The tests compile the constants and never run Python.
+is replaced by empty stand-ins and need not be installed. The tests read the file and never run Python.
 """
 
 import importlib.util
@@ -19,6 +20,9 @@ import types
 from unittest import mock
 
 import torch
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "data"))
+from golden_data import write  # noqa: E402
 
 torch.set_default_dtype(torch.float64)
 
@@ -72,33 +76,16 @@ def two_clusters(z, sigma, s=0.5):
     return (s**2 * z + sigma**2 * torch.tanh(z / (s**2 + sigma**2))) / (s**2 + sigma**2)
 
 
-def array(name, values, comment):
-    text = ", ".join(repr(value) for value in values)
-    lines, line = [], "   "
-    for word in text.split(" "):
-        if len(line) + 1 + len(word) > 118:
-            lines.append(line)
-            line = "   "
-        line += " " + word
-    lines.append(line)
-    body = "{" + line.strip() + "}" if len(lines) == 1 and len(line) < 70 else "{\n" + "\n".join(lines) + "}"
-    return f"/// {comment}\ninline constexpr std::array<double, {len(values)}> {name} = {body};\n"
-
-
-def run_text():
+def runs():
+    """The runs, each with what becomes of the starts."""
     methods = {"euler": sampling.sample_euler, "heun": sampling.sample_heun, "dpmpp_2m": sampling.sample_dpmpp_2m}
-    rows = []
     for estimate in (gaussian, two_points, two_clusters):
         for method_name, method in methods.items():
             for steps in (1, 2, 10):
                 model = CountedDenoiser(estimate)
-                sigmas = sampling.get_sigmas_karras(steps, SIGMA_MIN, SIGMA_MAX)
-                last = method(model, STARTS, sigmas, disable=True)
-                values = ", ".join(repr(value) for value in last.tolist())
-                cost = model.evaluations
-                rows.append(f"    run{{prior::{estimate.__name__}, sampler::{method_name}, {steps}, {cost},\n"
-                            f"        {{{values}}}}}")
-    return (f"inline constexpr std::array<run, {len(rows)}> runs = {{\n" + ",\n".join(rows) + "};\n")
+                last = method(model, STARTS, sampling.get_sigmas_karras(steps, SIGMA_MIN, SIGMA_MAX), disable=True)
+                yield {"prior": estimate.__name__, "sampler": method_name, "steps": steps,
+                       "evaluations": model.evaluations, "last": last.tolist()}
 
 
 def main():
@@ -109,32 +96,14 @@ def main():
     levels = [0.001, 0.0292, 0.03, 0.1, 0.5, 1.0, 2.5, 7.0, 14.0, 14.6146, 80.0]
     times_of_levels = schedule.sigma_to_t(torch.tensor(levels)).tolist()
 
-    parts = [
-        "// SPDX-License-Identifier: MIT\n"
-        "// What k-diffusion 0.1.1.post1 computes in double precision. "
-        "Written by make_golden.py: change that, not this.\n"
-        "// clang-format off\n"
-        "#pragma once\n\n#include <genrender/sampling/sampler.hpp>\n\n#include <array>\n#include <cstddef>\n\n"
-        "namespace genrender::golden {\n",
-    ]
-    for steps in (1, 2, 10, 50):
-        parts.append(array(f"karras_{steps}", sampling.get_sigmas_karras(steps, SIGMA_MIN, SIGMA_MAX).tolist(),
-                           f"[EDM eq. 5] Levels in Stable Diffusion's range, for a run of {steps}."))
-    parts.append(array("times", times, "Times, the ends of Stable Diffusion's 1000 steps among them."))
-    parts.append(array("sigmas_of_times", sigmas_of_times, "The noise levels of these times."))
-    parts.append(array("levels", levels, "Noise levels, some outside of Stable Diffusion's range."))
-    parts.append(array("times_of_levels", times_of_levels, "The times of these noise levels."))
-    parts.append(
-        "/// Whose posterior mean the denoiser of a run is: N(0.7, 1.3^2); two equally likely points -1 and 1; two\n"
-        "/// equally likely clusters N(-1, 0.5^2) and N(1, 0.5^2).\n"
-        "enum class prior { gaussian, two_points, two_clusters };\n\n"
-        "/// One run over the Karras levels of `steps` steps.\n"
-        "struct run {\n    prior of;\n    sampler method;\n    std::size_t steps;\n    std::size_t evaluations;\n"
-        f"    std::array<double, {len(STARTS)}> last;\n}};\n")
-    parts.append(array("starts", STARTS.tolist(), "The latents that each run starts from."))
-    parts.append("/// The runs, each with what becomes of the starts.\n" + run_text())
-    parts.append("} // namespace genrender::golden\n")
-    pathlib.Path(__file__).with_name("golden.hpp").write_text("\n".join(parts))
+    write("k_diffusion.json", {
+        "computed_by": "k-diffusion 0.1.1.post1 in double precision",
+        "written_by": "tests/sampling/make_golden.py",
+        "karras": {steps: sampling.get_sigmas_karras(steps, SIGMA_MIN, SIGMA_MAX).tolist() for steps in (1, 2, 10, 50)},
+        "times": times, "sigmas_of_times": sigmas_of_times,
+        "levels": levels, "times_of_levels": times_of_levels,
+        "starts": STARTS.tolist(), "runs": list(runs()),
+    })
 
 
 if __name__ == "__main__":

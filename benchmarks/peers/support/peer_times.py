@@ -9,23 +9,28 @@ import time
 
 
 class peer_times:
-    """The times of a script's cases. `about` is what the script tells of itself."""
+    """The times of a script's cases. `about` is what the script tells of itself, `kernels` which rows it is a peer of: the
+    constant KERNELS in a line of its own, by which it is only run if one of them is measured."""
 
-    def __init__(self, about):
+    def __init__(self, about, kernels):
         parser = argparse.ArgumentParser(description=about)
         parser.add_argument("--seconds", type=float, default=0.5, help="least time of a case")
         parser.add_argument("--filter", default="", help="a regular expression, as that of Google Benchmark")
         arguments = parser.parse_args()
         self._seconds = arguments.seconds
-        self._filter = arguments.filter
+        self._is_wanted = not arguments.filter.startswith("-")
+        self._filter = arguments.filter.removeprefix("-")
+        self._kernels = kernels
         self._times = []
 
     def wants(self, name):
         """Whether a case, by the full name that Google Benchmark gives to ours, is to run."""
-        return re.search(self._filter, name) is not None
+        return (re.search(self._filter, name) is not None) == self._is_wanted
 
     def add(self, name, peer, *bodies, warm_ups=2):
         """Keeps the time of the fastest of `bodies`, which are ways of `peer` to do the same."""
+        if name.split("/")[0] not in self._kernels:
+            raise ValueError(f"{name} is not among the script's KERNELS: {self._kernels}")
         wall, cpu = min(self._medians(body, warm_ups) for body in bodies)
         self._times.append({"name": name, "peer": peer, "seconds": wall, "cpu_seconds": cpu})
 

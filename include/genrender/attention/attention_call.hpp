@@ -67,6 +67,48 @@ concept attention_call = std::copyable<typename Call::features_type> && std::flo
     { call.mix(x, x, rows, alpha) } -> std::convertible_to<typename Call::features_type>;
 };
 
+/// Fails to compile with a sentence for each part that an attention_call lacks.
+template <class Call>
+consteval void require_attention_call() {
+    static_assert(
+        requires {
+            requires std::copyable<typename Call::features_type>;
+            requires std::floating_point<typename Call::real_type>;
+        },
+        "attention_call: features_type is copyable and real_type is float or double");
+    static_assert(
+        requires(Call & call) {
+            { call.place() } -> std::same_as<attention_place>;
+        },
+        "attention_call: place() returns an attention_place by value");
+    static_assert(
+        requires(Call & call) {
+            { call.frames() } -> std::convertible_to<std::span<frame_index const>>;
+        },
+        "attention_call: frames() returns a span of frame_index");
+    static_assert(
+        requires(Call & call, typename Call::features_type const& x) {
+            { call.f() } -> std::convertible_to<typename Call::features_type>;
+            { call.query(x) } -> std::convertible_to<typename Call::features_type>;
+            { call.key(x) } -> std::convertible_to<typename Call::features_type>;
+            { call.value(x) } -> std::convertible_to<typename Call::features_type>;
+        },
+        "attention_call: f(), query(f), key(f) and value(f) take features_type const& and return features_type");
+    static_assert(
+        requires(Call & call, typename Call::features_type const& Q,
+                 attention_sources<typename Call::features_type> const& sources) {
+            { call.attend(Q, sources) } -> std::convertible_to<typename Call::features_type>;
+        },
+        "attention_call: attend(Q, sources) takes attention_sources<features_type> const& and returns features_type");
+    static_assert(
+        requires(Call & call, typename Call::features_type const& F,
+                 std::span<sparse_rows<typename Call::real_type> const> rows, typename Call::real_type alpha) {
+            { call.mix(F, F, rows, alpha) } -> std::convertible_to<typename Call::features_type>;
+        },
+        "attention_call: mix(F_hat, F_KF, rows, alpha) takes a span of sparse_rows<real_type> const and returns "
+        "features_type");
+}
+
 /// The least that an attention_call is, for checking processors; never run.
 template <class Features, class Real>
 struct attention_call_archetype {

@@ -6,6 +6,7 @@
 
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/core/linalg.hpp>
+#include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
 
 #include <array>
@@ -14,7 +15,6 @@
 #include <memory>
 #include <utility>
 #include <variant>
-#include <vector>
 
 namespace genrender {
 
@@ -37,7 +37,7 @@ public:
     /// Owns new zeros.
     static host_features allocate(std::array<std::size_t, 3> const& extents) {
         host_features features;
-        features.template own<Real>(extents);
+        features.template own<Real>(stack<Real, 3>(extents));
         return features;
     }
 
@@ -52,7 +52,7 @@ public:
             features.template own_converted<bfloat16>(from);
             break;
         default:
-            copy(features.template own<Real>(from.extents()), from);
+            copy(features.template own<Real>(stack<Real, 3>::uninitialized(from.extents())), from);
         }
         return features;
     }
@@ -93,17 +93,17 @@ private:
     }
 
     template <class T>
-    strided_view<T, 3> own(std::array<std::size_t, 3> const& extents) {
-        auto values = std::make_shared<std::vector<T>>(extents[0] * extents[1] * extents[2]);
-        strided_view<T, 3> const view(values->data(), extents);
+    strided_view<T, 3> own(stack<T, 3> values) {
+        auto shared = std::make_shared<stack<T, 3>>(std::move(values));
+        auto const view = shared->view();
         view_ = view;
-        owner_ = std::move(values);
+        owner_ = std::move(shared);
         return view;
     }
 
     template <class T, class From>
     void own_converted(strided_view<From, 3> from) {
-        auto const to = own<T>(from.extents());
+        auto const to = own<T>(stack<T, 3>::uninitialized(from.extents()));
         for (std::size_t i = 0; i < from.extent(0); ++i) {
             for (std::size_t t = 0; t < from.extent(1); ++t) {
                 for (std::size_t c = 0; c < from.extent(2); ++c) {

@@ -32,6 +32,11 @@ struct plain_attention {
         return call.attend(Q, own_attention_sources(K, V, call.frames().size()));
     }
 
+    /// Says what a call lacks that is none.
+    template <class Call>
+        requires(!attention_call<Call>)
+    auto operator()(Call&) const { require_attention_call<Call>(); }
+
     /// Everywhere.
     bool is_plain_at(attention_place) const { return true; }
 };

@@ -6,37 +6,67 @@
 
 #include <genrender/core/strided_view.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <vector>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
 
 namespace genrender {
 
-/// Owns `extents` elements, row-major, value-initialised.
+/// Owns `extents` elements, row-major; the first begins at a cache line. Copies copy all elements, moves take the block
+/// along and leave a stack of none. Elements are numbers or plain records, for which bytes of zero mean zero. Throws
+/// std::bad_alloc where there is no memory for them.
 template <class T, std::size_t Rank>
 class stack {
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>,
+                  "stack: elements are copied as bytes, so they must be trivially copyable");
+
 public:
     using value_type = T;
+
+    /// Bytes of a cache line, at which a block begins.
+    static constexpr std::size_t line_bytes = 64;
+    static_assert(alignof(T) <= line_bytes, "stack: elements that must lie at more than a cache line's bytes");
 
     stack() = default;
 
     /// Allocates zeros.
-    explicit stack(std::array<std::size_t, Rank> const& extents) : extents_(extents) {
-        std::size_t count = 1;
-        for (auto const extent : extents) {
-            count *= extent;
+    explicit stack(std::array<std::size_t, Rank> const& extents) : stack(extents, not_set{}) {
+        if (size() > 0) {
+            std::memset(static_cast<void*>(data()), 0, size() * sizeof(T));
         }
-        values_.resize(count);
     }
+
+    /// Allocates elements that hold anything until they are written.
+    static stack uninitialized(std::array<std::size_t, Rank> const& extents) { return stack(extents, not_set{}); }
+
+    stack(stack const& other) : stack(other.extents_, not_set{}) {
+        if (size() > 0) {
+            std::memcpy(static_cast<void*>(data()), other.data(), size() * sizeof(T));
+        }
+    }
+    stack(stack&& other) noexcept
+        : extents_(std::exchange(other.extents_, {})), elements_(std::move(other.elements_)) {}
+    stack& operator=(stack other) noexcept {
+        extents_ = other.extents_;
+        elements_ = std::move(other.elements_);
+        return *this;
+    }
+    ~stack() = default;
 
     std::array<std::size_t, Rank> const& extents() const { return extents_; }
     std::size_t extent(std::size_t axis) const { return extents_[axis]; }
-    std::size_t size() const { return values_.size(); }
-    T* data() { return values_.data(); }
-    T const* data() const { return values_.data(); }
+    std::size_t size() const { return view().size(); }
+    T* data() { return elements_.get(); }
+    T const* data() const { return elements_.get(); }
 
-    strided_view<T, Rank> view() { return {values_.data(), extents_}; }
-    strided_view<T const, Rank> view() const { return {values_.data(), extents_}; }
+    strided_view<T, Rank> view() { return {data(), extents_}; }
+    strided_view<T const, Rank> view() const { return {data(), extents_}; }
 
     template <class... Index>
     T& operator()(Index... index) {
@@ -51,8 +81,27 @@ public:
     friend strided_view<T const, Rank> to_view(stack const& owner) { return owner.view(); }
 
 private:
+    struct not_set {};
+    struct release {
+        void operator()(T* elements) const { ::operator delete (elements, std::align_val_t{line_bytes}); }
+    };
+
+    stack(std::array<std::size_t, Rank> const& extents, not_set) : extents_(extents) {
+        if (std::find(extents.begin(), extents.end(), std::size_t{0}) != extents.end()) {
+            return;
+        }
+        auto bytes = sizeof(T);
+        for (auto const extent : extents) {
+            if (extent > std::numeric_limits<std::size_t>::max() / bytes) {
+                throw std::bad_array_new_length();
+            }
+            bytes *= extent;
+        }
+        elements_.reset(static_cast<T*>(::operator new (bytes, std::align_val_t{line_bytes})));
+    }
+
     std::array<std::size_t, Rank> extents_{};
-    std::vector<T> values_;
+    std::unique_ptr<T, release> elements_;
 };
 
 } // namespace genrender

@@ -60,4 +60,7 @@ inline constexpr float exponential_coefficients<float>[] = {
 #define GENRENDER_KERNELS <genrender/core/vectors.inl>
 #include <genrender/core/each_target.inl>
 
+#define GENRENDER_KERNELS <genrender/core/widening.inl>
+#include <genrender/core/each_target.inl>
+
 #include <genrender/core/end_header.inl>

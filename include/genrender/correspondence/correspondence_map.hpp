@@ -42,6 +42,30 @@ concept correspondence_map = std::copyable<typename Map::point_type> &&
     { map.token_at(i, point) } -> std::same_as<std::optional<token_index>>;
 };
 
+/// Fails to compile with a sentence for each part that a correspondence_map lacks.
+template <class Map>
+consteval void require_correspondence_map() {
+    static_assert(
+        requires { requires std::copyable<typename Map::point_type>; },
+        "correspondence_map: point_type is a copyable type");
+    static_assert(
+        requires(Map const& map) {
+            { map.frame_count() } -> std::convertible_to<std::size_t>;
+            { map.grid() } -> std::convertible_to<grid_extents>;
+        },
+        "correspondence_map: frame_count() is const and returns a number, grid() is const and returns grid_extents");
+    static_assert(
+        requires(Map const& map, frame_index i, token_index t) {
+            { map.point_at(i, t) } -> std::same_as<std::optional<typename Map::point_type>>;
+        },
+        "correspondence_map: point_at(frame, token) is const and returns std::optional<point_type>");
+    static_assert(
+        requires(Map const& map, frame_index i, typename Map::point_type const& point) {
+            { map.token_at(i, point) } -> std::same_as<std::optional<token_index>>;
+        },
+        "correspondence_map: token_at(frame, point) is const and returns std::optional<token_index>");
+}
+
 /// A correspondence_map that answers with several tokens and weights: `map.visit_tokens(frame, point, visit)` calls
 /// `visit(token_index, double weight)` for each token of the frame that shows the point, weights summing to 1, or
 /// never.

@@ -4,13 +4,12 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/core/chunked_memory.hpp>
 #include <genrender/core/index.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <list>
 #include <memory>
 #include <memory_resource>
 #include <mutex>
@@ -43,16 +42,19 @@ struct token_matches {
 /// keyframe again. Keeps those that came first, up to a number of bytes; may be used from several threads.
 class kept_matches {
 public:
+    /// Bytes of a chunk of memory, about: it holds the matches of whole pairs, of one at least.
+    static constexpr std::size_t chunk_bytes = std::size_t{512} << 10;
+
     explicit kept_matches(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
     /// The matches of a pair, made by `make()` unless they are kept.
     template <class Make>
     std::shared_ptr<token_matches const> of(frame_index from, frame_index to, Make&& make) {
-        std::pair const frames(from, to);
+        frame_pair const frames(from, to);
         {
             std::lock_guard const lock(mutex_);
-            if (auto const known = kept_->pairs.find(frames); known != kept_->pairs.end()) {
-                return {kept_, &known->second};
+            if (auto const* const known = kept_->find(frames)) {
+                return {kept_, known};
             }
         }
         // Made without the lock: two threads may make the same, which is the same.
@@ -62,9 +64,12 @@ public:
         if (bytes_ + bytes > most_bytes_) {
             return made;
         }
-        auto const [place, is_new] = kept_->pairs.try_emplace(frames, *made, &kept_->memory);
-        bytes_ += is_new ? bytes : 0;
-        return {kept_, &place->second};
+        if (auto const* const known = kept_->find(frames)) {
+            return {kept_, known};
+        }
+        auto const* const kept = kept_->add(frames, *made, bytes);
+        bytes_ += bytes;
+        return {kept_, kept};
     }
 
     /// Bytes of all that is kept.
@@ -77,14 +82,45 @@ public:
     static constexpr std::size_t expected_bytes(std::size_t pairs, std::size_t tokens, std::size_t most_bytes) {
         auto const a_pair = token_matches::bytes_of(tokens);
         auto const bytes = std::min(pairs, most_bytes / a_pair) * a_pair;
-        constexpr auto chunk = chunked_memory::chunk_bytes;
-        return (bytes + chunk - 1) / chunk * chunk;
+        return (bytes + chunk_bytes - 1) / chunk_bytes * chunk_bytes;
     }
 
 private:
+    using frame_pair = std::pair<frame_index, frame_index>;
+
+    /// Matches are small and stay. Allocated one by one between larger blocks that are freed, they would leave holes
+    /// that nothing fits in, and a run of many frames would grow by them; so they lie in chunks, apart from the rest.
     struct store {
-        chunked_memory memory;
-        std::pmr::map<std::pair<frame_index, frame_index>, token_matches> pairs{&memory};
+        struct link {
+            frame_pair frames;
+            token_matches const* matches;
+        };
+        std::list<std::pmr::monotonic_buffer_resource> chunks;
+        std::size_t left = 0;    ///< bytes of the last chunk
+        std::vector<link> links; ///< rising by frames
+
+        std::vector<link>::iterator place_of(frame_pair const& frames) {
+            return std::lower_bound(links.begin(), links.end(), frames,
+                                    [](link const& one, frame_pair const& other) { return one.frames < other; });
+        }
+
+        token_matches const* find(frame_pair const& frames) {
+            auto const place = place_of(frames);
+            return place != links.end() && place->frames == frames ? place->matches : nullptr;
+        }
+
+        /// Copies matches of so many bytes. What a chunk holds ends with it and needs no destructor.
+        token_matches const* add(frame_pair const& frames, token_matches const& matches, std::size_t bytes) {
+            if (bytes > left) {
+                left = std::max<std::size_t>(1, chunk_bytes / bytes) * bytes;
+                chunks.emplace_back(left);
+            }
+            left -= bytes;
+            std::pmr::polymorphic_allocator<> memory(&chunks.back());
+            auto const* const kept = memory.new_object<token_matches>(matches, memory.resource());
+            links.insert(place_of(frames), {frames, kept});
+            return kept;
+        }
     };
 
     std::size_t most_bytes_;

@@ -38,6 +38,15 @@ concept canonical_maps = std::copy_constructible<Maps> && requires(Maps const& m
     { maps.point_at(i, p) } -> std::same_as<std::array<float, Maps::dimensions>>;
 };
 
+/// Fails to compile with a sentence for what canonical maps lack.
+template <class Maps>
+consteval void require_canonical_maps() {
+    static_assert(
+        canonical_maps<Maps>,
+        "canonical_maps: maps can be copied and have dimensions, frame_count(), grid(), is_covered(frame, pixel), "
+        "object_at(frame, pixel) and point_at(frame, pixel), all const");
+}
+
 /// Maps of an animation in their owner's memory, of D coordinates: full resolution, no antialiasing, floating point. A
 /// model of canonical_maps.
 template <std::size_t D>

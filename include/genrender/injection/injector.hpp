@@ -70,6 +70,11 @@ public:
         return call.mix(F_hat, *kept->F_KF, rows, settings_.alpha(call.place().site));
     }
 
+    /// Says what a call lacks that is none.
+    template <class Call>
+        requires(!attention_call<Call>)
+    auto operator()(Call&) const { require_attention_call<Call>(); }
+
     /// Where the bank holds nothing.
     bool is_plain_at(attention_place place) const { return bank_->find(place) == nullptr; }
 

@@ -52,6 +52,11 @@ public:
         return F;
     }
 
+    /// Says what a call lacks that is none.
+    template <class Call>
+        requires(!attention_call<Call>)
+    auto operator()(Call&) const { require_attention_call<Call>(); }
+
     /// Whether features of a place are kept.
     bool records(attention_place place) const { return takes_part_(place); }
 

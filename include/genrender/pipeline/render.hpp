@@ -158,6 +158,7 @@ template <denoiser Phi, canonical_maps Maps, class MakeMap, parallel_loop Loop =
 latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV, MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
+    require_correspondence_map<map_made_by<MakeMap>>();
     return render(generative_rendering{}, phi, UV, make_map, settings, report, std::move(observer), loop);
 }
 
@@ -167,6 +168,26 @@ latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, Loop const& loop = {}) {
     return render(generative_rendering{}, phi, UV, settings, report, std::move(observer), loop);
+}
+
+/// What follows renders nothing: it says in a sentence which argument of render() is not what it must be.
+template <class Phi, class Maps, class... Rest>
+    requires(canonical_maps<Maps> && !denoiser<Phi>)
+auto render(Phi const&, Maps const&, Rest const&...) { require_denoiser<Phi>(); }
+
+template <class Method, class Phi, class Maps, class... Rest>
+    requires(canonical_maps<Maps> && !denoiser<Phi>)
+auto render(Method const&, Phi const&, Maps const&, Rest const&...) { require_denoiser<Phi>(); }
+
+template <denoiser Phi, class Maps, class... Rest>
+    requires(!canonical_maps<Maps>)
+auto render(Phi const&, Maps const&, Rest const&...) { require_canonical_maps<Maps>(); }
+
+template <denoiser Phi, canonical_maps Maps, class Real, class... Rest>
+    requires(!std::is_same_v<Real, typename Phi::real_type>)
+auto render(Phi const&, Maps const&, render_settings<Real> const&, Rest const&...) {
+    static_assert(std::is_same_v<Real, typename Phi::real_type>,
+                  "render: settings are render_settings<Real> with the real_type of the denoiser");
 }
 
 } // namespace genrender

@@ -46,14 +46,14 @@ struct render_settings {
     std::function<Real(std::size_t step, attention_site const&)> alpha = [](std::size_t, attention_site const&) {
         return Real(0.7);
     };
-    bool pre_attention = true;                    ///< eq. 3 and 5; without it no frame attends to another
-    bool post_attention = true;                   ///< eq. 6
-    bool keeps_own_copy = true;                   ///< eq. 5 as written: a keyframe meets its own tokens twice
-    Real first_fill_share = Real(0.5);            ///< of the inpainted texture in the unified one
+    bool pre_attention = true;         ///< eq. 3 and 5; without it no frame attends to another
+    bool post_attention = true;        ///< eq. 6
+    bool keeps_own_copy = true;        ///< eq. 5 as written: a keyframe meets its own tokens twice
+    Real first_fill_share = Real(0.5); ///< of the inpainted texture in the unified one
     /// How the average texture weighs keyframes; plain is the paper's.
     texel_average average = texel_average::by_quality;
-    Real window_begin = 0;                        ///< first and
-    Real window_end = 1; ///< last share of the steps with keyframes and injection, [begin, end)
+    Real window_begin = 0; ///< first and
+    Real window_end = 1;   ///< last share of the steps with keyframes and injection, [begin, end)
 
     genrender::feature_storage feature_storage = genrender::feature_storage::same; ///< of keyframes
     /// Whether a denoiser that can (residual_lender) keeps what the keyframe pass has computed of keyframes: the same

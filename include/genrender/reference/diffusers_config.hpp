@@ -221,13 +221,13 @@ inline nlohmann::json scheduler_json(unet_config const& config) {
     auto const kind = std::find(internal::predictions.begin(), internal::predictions.end(), config.prediction_type);
     require_value(kind != internal::predictions.end(), "scheduler_json", "prediction_type", "flow",
                   "epsilon, velocity or clean");
-    return {
-        {"_class_name", "EulerDiscreteScheduler"},
-        {"beta_schedule", "scaled_linear"},
-        {"beta_start", config.beta_start},
-        {"beta_end", config.beta_end},
-        {"num_train_timesteps", config.num_train_timesteps},
-        {"prediction_type", internal::prediction_names[static_cast<std::size_t>(kind - internal::predictions.begin())]}};
+    return {{"_class_name", "EulerDiscreteScheduler"},
+            {"beta_schedule", "scaled_linear"},
+            {"beta_start", config.beta_start},
+            {"beta_end", config.beta_end},
+            {"num_train_timesteps", config.num_train_timesteps},
+            {"prediction_type",
+             internal::prediction_names[static_cast<std::size_t>(kind - internal::predictions.begin())]}};
 }
 
 } // namespace genrender::reference

@@ -5,11 +5,10 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/index.hpp>
+#include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
-#include <genrender/reference/feature_memory.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <type_traits>
 
@@ -17,37 +16,32 @@ namespace genrender::reference {
 
 /// Features [frames, tokens, channels] of a grid; token = row * width + column.
 template <class Real>
-class feature_maps {
-public:
+struct feature_maps {
+    stack<Real, 4> values; ///< [frames, height, width, channels]
+
     feature_maps() = default;
 
     /// Numbers that nobody has set.
     feature_maps(std::size_t frames, grid_extents grid, std::size_t channels)
-        : grid_(grid), extents_{frames, grid.size(), channels}, values_(frames * grid.size() * channels) {}
+        : values(stack<Real, 4>::uninitialized({frames, grid.height, grid.width, channels})) {}
 
-    grid_extents grid() const { return grid_; }
-    std::size_t frames() const { return extents_[0]; }
-    std::size_t channels() const { return extents_[2]; }
+    std::size_t frames() const { return values.extent(0); }
+    grid_extents grid() const { return {values.extent(1), values.extent(2)}; }
+    std::size_t channels() const { return values.extent(3); }
 
-    strided_view<Real, 3> view() { return {values_.data(), extents_}; }
-    strided_view<Real const, 3> view() const { return {values_.data(), extents_}; }
+    strided_view<Real, 3> view() { return {values.data(), {frames(), grid().size(), channels()}}; }
+    strided_view<Real const, 3> view() const { return {values.data(), {frames(), grid().size(), channels()}}; }
     /// Features of entry i of the stack [tokens, channels].
     strided_view<Real, 2> operator[](std::size_t i) { return view()[i]; }
     strided_view<Real const, 2> operator[](std::size_t i) const { return view()[i]; }
 
     /// The same memory as the engine's outside writes it [frames, channels, height, width]; copies nothing.
     strided_view<Real, 4> channels_first() {
-        auto const row = static_cast<std::ptrdiff_t>(grid_.width * channels());
-        return {
-            values_.data(),
-            {frames(), channels(), grid_.height, grid_.width},
-            {static_cast<std::ptrdiff_t>(grid_.size() * channels()), 1, row, static_cast<std::ptrdiff_t>(channels())}};
+        auto const maps = values.view();
+        return {values.data(),
+                {frames(), channels(), grid().height, grid().width},
+                {maps.stride(0), maps.stride(3), maps.stride(1), maps.stride(2)}};
     }
-
-private:
-    grid_extents grid_;
-    std::array<std::size_t, 3> extents_{};
-    feature_memory<Real> values_;
 };
 
 /// Adds scale * `from` to `to`, both [tokens, channels] with contiguous rows. Throws shape_error if they differ.

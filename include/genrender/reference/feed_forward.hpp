@@ -5,9 +5,9 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/parallel.hpp>
+#include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/reference/activation.hpp>
-#include <genrender/reference/feature_memory.hpp>
 #include <genrender/reference/linear.hpp>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ public:
         loop((tokens + block - 1) / block, [&](std::size_t i) {
             auto const begin = i * block;
             auto const count = std::min(block, tokens - begin);
-            feature_memory<Real> memory(count * 2 * width);
-            strided_view<Real, 2> const both(memory.data(), {count, 2 * width});
+            auto memory = stack<Real, 2>::uninitialized({count, 2 * width});
+            auto const both = memory.view();
             proj_(both, x.slice(begin, count));
             // Leave a * gelu(b) in the place of a.
             for (std::size_t token = 0; token < count; ++token) {

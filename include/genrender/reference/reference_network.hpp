@@ -203,8 +203,8 @@ private:
         require_value(hint.extent(3) % scale == 0, function, "width of hint", hint.extent(3), expected.c_str());
         latent_grid_ = {hint.extent(2) / scale, hint.extent(3) / scale};
         require_latent_grid(config_, latent_grid_);
-        require_value(is_finite(conditioning_.guidance_scale), function, "guidance_scale",
-                      conditioning_.guidance_scale, "a finite number");
+        require_value(is_finite(conditioning_.guidance_scale), function, "guidance_scale", conditioning_.guidance_scale,
+                      "a finite number");
         require_prompt("prompt", conditioning_.prompt);
         if (branches() == 2) {
             require_prompt("empty_prompt", conditioning_.empty_prompt);

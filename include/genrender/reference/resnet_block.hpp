@@ -4,9 +4,9 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/stack.hpp>
 #include <genrender/reference/conv2d.hpp>
 #include <genrender/reference/feature_maps.hpp>
-#include <genrender/reference/feature_memory.hpp>
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/group_norm.hpp>
 #include <genrender/reference/linear.hpp>
@@ -60,12 +60,11 @@ private:
     template <class Loop>
     void run(strided_view<Real, 2> out, in_view<Real, 2> x, grid_extents grid, std::span<Real const> shift,
              Loop const& loop) const {
-        feature_memory<Real> memory(out.size());
-        strided_view<Real, 2> const hidden(memory.data(), out.extents());
+        auto hidden = stack<Real, 2>::uninitialized(out.extents());
         {
             padded_map<Real> normed(grid, x.extent(1));
             norm1_.with_silu(normed, x, loop);
-            conv1_(hidden, normed, {shift, {}}, loop);
+            conv1_(hidden.view(), normed, {shift, {}}, loop);
         }
         padded_map<Real> normed(grid, out.extent(1));
         norm2_.with_silu(normed, hidden, loop);

@@ -4,8 +4,8 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/stack.hpp>
 #include <genrender/reference/feature_maps.hpp>
-#include <genrender/reference/feature_memory.hpp>
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/group_norm.hpp>
 #include <genrender/reference/linear.hpp>
@@ -38,9 +38,8 @@ public:
     void operator()(Pass const& pass, feature_maps<Real>& x) const {
         auto h = pass.maps(x.grid(), x.channels());
         pass.each_frame([&](std::size_t i) {
-            feature_memory<Real> memory(x[i].size());
-            strided_view<Real, 2> const normed(memory.data(), x[i].extents());
-            norm_(normed, x[i], pass.tokens());
+            auto normed = stack<Real, 2>::uninitialized(x[i].extents());
+            norm_(normed.view(), x[i], pass.tokens());
             proj_in_(h[i], normed, pass.tokens());
         });
         for (auto const& block : blocks_) {

@@ -11,7 +11,6 @@
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/reference/attention_matrices.hpp>
 #include <genrender/reference/feature_maps.hpp>
-#include <genrender/reference/feature_memory.hpp>
 #include <genrender/reference/feed_forward.hpp>
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/layer_norm.hpp>
@@ -33,7 +32,7 @@ strided_view<Real const, 2> with_contiguous_rows(strided_view<Real const, 2> vie
     if (view.rows_are_contiguous()) {
         return view;
     }
-    storage = stack<Real, 2>(view.extents());
+    storage = stack<Real, 2>::uninitialized(view.extents());
     copy(storage.view(), view);
     return storage.view();
 }
@@ -76,9 +75,9 @@ public:
             constexpr std::size_t block = 384;
             pass.tokens()((tokens + block - 1) / block, [&](std::size_t b) {
                 auto const rows = h[i].slice(b * block, std::min(block, tokens - b * block));
-                feature_memory<Real> memory(2 * rows.size());
-                strided_view<Real, 2> const normed(memory.data(), rows.extents());
-                strided_view<Real, 2> const Q(memory.data() + rows.size(), rows.extents());
+                auto memory = stack<Real, 3>::uninitialized({2, rows.extent(0), rows.extent(1)});
+                auto const normed = memory.view()[0];
+                auto const Q = memory.view()[1];
                 norm2_(normed, rows);
                 attn2_.query(Q, normed);
                 scaled_dot_product(normed, Q, prompt, attn2_.heads());

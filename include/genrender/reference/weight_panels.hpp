@@ -5,9 +5,9 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/parallel.hpp>
+#include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
-#include <genrender/reference/feature_memory.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -78,7 +78,8 @@ public:
     weight_panels(std::size_t inputs, std::size_t outputs, WeightOf const& weight_of)
         : target_(chosen_vector_target()), layout_(GENRENDER_KERNEL_OF(target_, internal, layout_of_panels<Real>)()),
           inputs_(inputs), outputs_(outputs),
-          weights_(inputs * ((outputs + layout_.lanes - 1) / layout_.lanes * layout_.lanes)) {
+          weights_(stack<Real, 1>::uninitialized(
+              {inputs * ((outputs + layout_.lanes - 1) / layout_.lanes * layout_.lanes)})) {
         auto const lane = layout_.lanes;
         auto const panel = 2 * lane;
         auto* to = weights_.data();
@@ -124,7 +125,7 @@ private:
     internal::panel_layout layout_{1, 1};
     std::size_t inputs_ = 0;
     std::size_t outputs_ = 0;
-    feature_memory<Real> weights_;
+    stack<Real, 1> weights_;
 };
 
 } // namespace genrender::reference

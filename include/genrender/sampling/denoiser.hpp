@@ -53,6 +53,40 @@ concept denoiser = std::floating_point<typename Phi::real_type> && std::copyable
     phi(x0, z, sigma, frames, processor);
 };
 
+/// Fails to compile with a sentence for each part that a denoiser lacks.
+template <class Phi>
+consteval void require_denoiser() {
+    static_assert(
+        requires {
+            requires std::floating_point<typename Phi::real_type>;
+            requires std::copyable<typename Phi::features_type>;
+        },
+        "denoiser: real_type is float or double and features_type is copyable");
+    static_assert(
+        requires(Phi const& phi) {
+            { phi.latent_channels() } -> std::convertible_to<std::size_t>;
+            { phi.latent_grid() } -> std::convertible_to<grid_extents>;
+        },
+        "denoiser: latent_channels() is const and returns a number, latent_grid() is const and returns grid_extents");
+    static_assert(
+        requires(Phi const& phi) {
+            { phi.sites() } -> std::ranges::random_access_range;
+        },
+        "denoiser: sites() is const and returns a random access range of attention_site");
+    static_assert(
+        requires(Phi const& phi) {
+            { phi.branches() } -> std::convertible_to<std::size_t>;
+        },
+        "denoiser: branches() is const and returns the number of guidance branches");
+    static_assert(
+        requires(Phi const& phi, strided_view<typename Phi::real_type, 4> x0,
+                 strided_view<typename Phi::real_type const, 4> z, typename Phi::real_type sigma,
+                 std::span<frame_index const> frames,
+                 attention_processor_archetype& processor) { phi(x0, z, sigma, frames, processor); },
+        "denoiser: operator()(x0, z, sigma, frames, processor) is const, takes x0 as strided_view<real_type, 4>, z as "
+        "strided_view<real_type const, 4>, and is a template for every processor");
+}
+
 /// The least that a denoiser is, for checking what takes one; never run.
 template <class Real, class Features>
 struct denoiser_archetype {

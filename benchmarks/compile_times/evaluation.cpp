@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+// What a file costs that includes the measures of results.
+#include <genrender/evaluation.hpp>

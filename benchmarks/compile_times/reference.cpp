@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+// What a file costs that includes the reference network.
+#include <genrender/reference.hpp>

@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+// What a file costs that includes meshes, cameras and the rasteriser.
+#include <genrender/scene.hpp>

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// A denoiser that takes z as latents it may change.
+// expected: z as strided_view<real_type const, 4>
+#include "right_models.hpp"
+
+struct changes_z : right_denoiser {
+    template <class Processor>
+    void operator()(strided_view<float, 4> x0, strided_view<float, 4> z, float sigma,
+                    std::span<frame_index const> frames, Processor& processor) const;
+};
+
+int main() { genrender::require_denoiser<changes_z>(); }

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// The files of tests/data: what other projects computed, to the last digit.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace genrender::testing {
+
+/// The content of tests/data/`name`. Throws std::runtime_error if it cannot be read, nlohmann's exceptions if it is no
+/// JSON.
+inline nlohmann::json golden_file(std::string const& name) {
+    auto const path = std::string(GENRENDER_TEST_DATA) + "/" + name;
+    std::ifstream file(path);
+    if (!file) {
+        throw std::runtime_error(path + ": cannot be read");
+    }
+    return nlohmann::json::parse(file);
+}
+
+} // namespace genrender::testing
