@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A program that uses a little of everything and is compiled as hosts are: without run-time types, with their macros, with
-// -ffast-math. `host FILE` writes its figures; `host FILE BOUND` compares them with those of another build.
+// A program that uses a little of everything and is compiled as hosts are: without run-time types, with their macros,
+// with -ffast-math. `host FILE` writes its figures; `host FILE BOUND` compares them with those of another build.
 #include <genrender/genrender.hpp>
 #include <genrender/scene.hpp>
 
@@ -164,8 +164,8 @@ bool refuses_what_is_not_finite() {
     return refused;
 }
 
-/// Whether figures are those of the file: no more than a hundredth of each kind may differ by more than `bound` times the
-/// greatest, which are places on a border that rounding moves to its other side.
+/// Whether figures are those of the file: no more than a hundredth of each kind may differ by more than `bound` times
+/// the greatest, which are places on a border that rounding moves to its other side.
 bool compare(figures const& found, std::string const& path, double bound) {
     std::ifstream file(path);
     bool is_same = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Included before anything else of a host: the standard library, then macros that system headers and old programs define.
+// Included before anything else of a host: the standard library, then macros that systems and old programs define.
 #pragma once
 
 #include <algorithm>

@@ -240,13 +240,9 @@ private:
     }
 
     static void copy_scaled(strided_view<Real, 3> to, strided_view<Real const, 3> from, Real factor) {
-        for (std::size_t channel = 0; channel < to.extent(0); ++channel) {
-            for (std::size_t row = 0; row < to.extent(1); ++row) {
-                for (std::size_t column = 0; column < to.extent(2); ++column) {
-                    to(channel, row, column) = factor * from(channel, row, column);
-                }
-            }
-        }
+        for_each(to, [&](std::size_t channel, std::size_t row, std::size_t column) {
+            to(channel, row, column) = factor * from(channel, row, column);
+        });
     }
 
     /// The time that the network was told of during training for latents of this noise level.
