@@ -2,6 +2,8 @@
 // [GR sec. 3.4] Latent normalisation: AdaIN that gives every frame's background the statistics of the first frame's.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
@@ -118,3 +120,5 @@ std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view
 } // namespace GENRENDER_UNIT
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

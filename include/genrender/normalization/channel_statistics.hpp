@@ -2,6 +2,8 @@
 // [GR sec. 3.4] Mean and deviation of each channel of a frame's latents over the background.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 
@@ -97,3 +99,5 @@ channel_statistics<Real> masked_statistics(strided_view<Real const, 3> z, stride
 } // namespace GENRENDER_UNIT
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

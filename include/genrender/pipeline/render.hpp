@@ -3,6 +3,8 @@
 // denoiser.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/guidance/background_mask.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
@@ -189,3 +191,5 @@ auto render(Phi const&, Maps const&, render_settings<Real> const&, Rest const&..
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // What a run found out about itself: how much the keyframes covered, what was left alone, where the time went.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 
 #include <cstddef>
@@ -60,3 +62,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>
