@@ -53,6 +53,7 @@ refuses("more keyframes than frames" 2 "count is 9, expected 1 to the animation'
 refuses("a size that the network cannot halve" 2 "height of the latents is 30" ${scene} --prompt dots ${out} --size 60)
 refuses("an alpha above 1" 2 "--alpha" ${scene} --prompt dots ${out} --alpha 1.5)
 refuses("an alpha that is no number" 2 "--alpha" ${scene} --prompt dots ${out} --alpha nan)
+refuses("vectors that no processor has" 2 "--vectors" ${scene} --prompt dots ${out} --vectors v9)
 refuses("a negative seed" 2 "--seed" ${scene} --prompt dots ${out} --seed -1)
 refuses("maps that no machine can hold" 2 "half of the machine's memory" ${scene} --prompt dots ${out} --size 1048576)
 refuses("weights without a name" 2 "--weights" ${scene} --prompt dots ${out} --weights "")
