@@ -27,7 +27,9 @@ inline constexpr std::size_t sources_a_pass = 8;
 #define GENRENDER_KERNELS <genrender/blending/mix_rows.inl>
 #include <genrender/core/each_target.inl>
 
-namespace genrender::detail::inline GENRENDER_UNIT {
+namespace genrender::detail {
+
+inline namespace GENRENDER_UNIT {
 
 /// mix_rows for features stored as any type.
 template <class Real, class Stored, class Loop>
@@ -56,7 +58,9 @@ void mix_stored_rows(strided_view<Real, 2> F, strided_view<Stored const, 3> cons
     });
 }
 
-} // namespace genrender::detail::inline GENRENDER_UNIT
+} // namespace GENRENDER_UNIT
+
+} // namespace genrender::detail
 
 namespace genrender {
 
