@@ -103,7 +103,7 @@ workflow() {
     count_tests "$@"
 }
 
-# Adds a line to `counts`: how many tests of a preset ran in the build folder that is named after it or given, and how many
+# Adds a line to `counts`: how many tests of a preset were started in the build folder that is named after it or given, and how many
 # cases of doctest these hold. None is a failure.
 counts=""
 count_tests() {
@@ -113,7 +113,7 @@ count_tests() {
             /^[0-9]+\/[0-9]+ Testing: / { tests += 1 }
             /^\[doctest\] test cases: / { split($0, words, ":"); cases += words[2] + 0 }
             END {
-                printf "%-12s %5d tests passed, %5d cases of doctest in them\n.", preset, tests, cases
+                printf "%-12s %5d tests, %5d cases of doctest in them\n.", preset, tests, cases
                 exit tests == 0
             }' "$log")"
         counts=${counts%.}
