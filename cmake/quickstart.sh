@@ -103,8 +103,8 @@ workflow() {
     count_tests "$@"
 }
 
-# Adds a line to `counts`: how many tests of a preset were started in the build folder that is named after it or given, and how many
-# cases of doctest these hold. None is a failure.
+# Adds a line to `counts`: how many tests of a preset were started, in the build folder that is named after it or given,
+# and how many cases of doctest these hold. None is a failure.
 counts=""
 count_tests() {
     log=build/${2-$1}/Testing/Temporary/LastTest.log
