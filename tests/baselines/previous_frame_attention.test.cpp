@@ -15,51 +15,51 @@
 using namespace genrender;
 using namespace genrender::testing;
 
-namespace {
-
-constexpr std::size_t tokens = 9;
-constexpr std::size_t channels = 8;
-constexpr attention_place place{{1}, 0};
-constexpr std::size_t sites = 3;
-
-bool everywhere(attention_place) { return true; }
-
-template <class Real>
-using call_of = host_attention_call<Real, matrix_module<Real>>;
-
-std::vector<frame_index> frames_from(std::uint32_t first, std::uint32_t count) {
-    std::vector<frame_index> frames;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        frames.push_back({first + i});
-    }
-    return frames;
-}
-
-/// F of one place for all frames of f, run in stacks of the given sizes.
-template <class Real>
-host_features<Real> chained(host_features<Real> const& f, matrix_module<Real> const& module,
-                            std::vector<std::uint32_t> const& stacks) {
-    auto const F = host_features<Real>::allocate(f.extents());
-    earlier_frames<host_features<Real>> earlier;
-    std::uint32_t first = 0;
-    for (auto const count : stacks) {
-        auto const frames = frames_from(first, count);
-        feature_bank<host_features<Real>> kept(sites, 2);
-        previous_frame_attention<host_features<Real>> const attend(earlier, kept, everywhere);
-        call_of<Real> call(place, frames, host_features<Real>(f.view().slice(first, count)), module);
-        copy(F.view().slice(first, count), in_view<Real, 3>(attend(call).view()));
-        earlier.add(kept, count);
-        first += count;
-    }
-    return F;
-}
-
-template <class Real>
-constexpr double tolerance = sizeof(Real) == 4 ? 1e-5 : 1e-13;
-
-} // namespace
-
 TEST_SUITE("baselines/previous_frame_attention") {
+    namespace {
+
+    constexpr std::size_t tokens = 9;
+    constexpr std::size_t channels = 8;
+    constexpr attention_place place{{1}, 0};
+    constexpr std::size_t sites = 3;
+
+    bool everywhere(attention_place) { return true; }
+
+    template <class Real>
+    using call_of = host_attention_call<Real, matrix_module<Real>>;
+
+    std::vector<frame_index> frames_from(std::uint32_t first, std::uint32_t count) {
+        std::vector<frame_index> frames;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            frames.push_back({first + i});
+        }
+        return frames;
+    }
+
+    /// F of one place for all frames of f, run in stacks of the given sizes.
+    template <class Real>
+    host_features<Real> chained(host_features<Real> const& f, matrix_module<Real> const& module,
+                                std::vector<std::uint32_t> const& stacks) {
+        auto const F = host_features<Real>::allocate(f.extents());
+        earlier_frames<host_features<Real>> earlier;
+        std::uint32_t first = 0;
+        for (auto const count : stacks) {
+            auto const frames = frames_from(first, count);
+            feature_bank<host_features<Real>> kept(sites, 2);
+            previous_frame_attention<host_features<Real>> const attend(earlier, kept, everywhere);
+            call_of<Real> call(place, frames, host_features<Real>(f.view().slice(first, count)), module);
+            copy(F.view().slice(first, count), in_view<Real, 3>(attend(call).view()));
+            earlier.add(kept, count);
+            first += count;
+        }
+        return F;
+    }
+
+    template <class Real>
+    constexpr double tolerance = sizeof(Real) == 4 ? 1e-5 : 1e-13;
+
+    } // namespace
+
     TEST_CASE("it is an attention processor") {
         CHECK(attention_processor<previous_frame_attention<int> const, attention_call_archetype<int, float>>);
         CHECK_FALSE(

@@ -52,105 +52,106 @@ struct graph_engine : denoiser_archetype<float, handle> {
 
 } // namespace foreign
 
-namespace {
+TEST_SUITE("injection/feature_io") {
+    namespace {
 
-constexpr std::size_t tokens = 11;
-constexpr std::size_t channels = 6;
-std::vector<frame_index> const KF{{5}, {2}, {0}};
-std::vector<frame_index> const frames{{1}, {2}};
-constexpr attention_place place{{0}, 1};
+    constexpr std::size_t tokens = 11;
+    constexpr std::size_t channels = 6;
+    std::vector<frame_index> const KF{{5}, {2}, {0}};
+    std::vector<frame_index> const frames{{1}, {2}};
+    constexpr attention_place place{{0}, 1};
 
-template <class Real>
-using call_of = host_attention_call<Real, matrix_module<Real>>;
+    template <class Real>
+    using call_of = host_attention_call<Real, matrix_module<Real>>;
 
-/// One self-attention module of a static graph: it knows feature_inputs and nothing of processors.
-template <class Real>
-host_features<Real> run_graph(matrix_module<Real> const& module, host_features<Real> const& f,
-                              feature_inputs<host_features<Real>, Real> const& in) {
-    auto const F = host_features<Real>::allocate(f.extents());
-    for (std::size_t i = 0; i < f.extents()[0]; ++i) {
-        auto const own = joined_rows(f, {i});
-        auto joined = own;
-        if (in.attends_to_stack) {
-            joined.clear();
-            for (std::size_t j = 0; j < f.extents()[0]; ++j) {
-                auto const rows = joined_rows(f, {j});
-                joined.insert(joined.end(), rows.begin(), rows.end());
-            }
-        }
-        for (std::size_t k = 0; in.f_KF != nullptr && k < in.f_KF->extents()[0]; ++k) {
-            if (k != in.left_out[i]) {
-                auto const rows = joined_rows(*in.f_KF, {k});
-                joined.insert(joined.end(), rows.begin(), rows.end());
-            }
-        }
-        auto out = dense_self_attention(module, own, joined);
-        if (in.F_KF != nullptr) {
-            out = dense_mix(out, joined_rows(*in.F_KF, {0, 1, 2}), in.rows[i], in.alpha);
-        }
-        for (std::size_t t = 0; t < tokens; ++t) {
-            for (std::size_t c = 0; c < channels; ++c) {
-                F.view()(i, t, c) = static_cast<Real>(out[t][c]);
-            }
-        }
-    }
-    return F;
-}
-
-/// The whole second way in, for one place.
-template <class Real, class Processor>
-host_features<Real> through_graph(matrix_module<Real> const& module, host_features<Real> const& f,
-                                  std::span<frame_index const> stack, Processor const& processor) {
-    auto const in = inputs_at<host_features<Real>, Real>(processor, place, stack);
-    auto const F = run_graph(module, f, in);
-    if (in.is_recorded) {
-        record_features(processor, place, f, F);
-    }
-    return F;
-}
-
-template <class Real, class Processor>
-host_features<Real> through_callback(matrix_module<Real> const& module, host_features<Real> const& f,
-                                     std::span<frame_index const> stack, Processor const& processor) {
-    call_of<Real> call(place, stack, f, module);
-    return processor(call);
-}
-
-template <class Real>
-bool are_close(host_features<Real> const& a, host_features<Real> const& b) {
-    double greatest = 0;
-    for (std::size_t i = 0; i < a.extents()[0]; ++i) {
-        greatest = std::max(greatest, greatest_difference(a, i, joined_rows(b, {i})));
-    }
-    return greatest <= (sizeof(Real) == 4 ? 1e-6 : 1e-13);
-}
-
-/// The greatest difference of two handles' values, in whatever format each keeps them.
-template <class Real>
-double greatest_kept_difference(host_features<Real> const& a, host_features<Real> const& b) {
-    REQUIRE(a.extents() == b.extents());
-    double greatest = 0;
-    a.visit([&](auto const& of_a) {
-        b.visit([&](auto const& of_b) {
-            for (std::size_t i = 0; i < a.extents()[0]; ++i) {
-                for (std::size_t t = 0; t < a.extents()[1]; ++t) {
-                    for (std::size_t c = 0; c < a.extents()[2]; ++c) {
-                        auto const difference = static_cast<double>(of_a(i, t, c)) - static_cast<double>(of_b(i, t, c));
-                        greatest = std::max(greatest, std::abs(difference));
-                    }
+    /// One self-attention module of a static graph: it knows feature_inputs and nothing of processors.
+    template <class Real>
+    host_features<Real> run_graph(matrix_module<Real> const& module, host_features<Real> const& f,
+                                  feature_inputs<host_features<Real>, Real> const& in) {
+        auto const F = host_features<Real>::allocate(f.extents());
+        for (std::size_t i = 0; i < f.extents()[0]; ++i) {
+            auto const own = joined_rows(f, {i});
+            auto joined = own;
+            if (in.attends_to_stack) {
+                joined.clear();
+                for (std::size_t j = 0; j < f.extents()[0]; ++j) {
+                    auto const rows = joined_rows(f, {j});
+                    joined.insert(joined.end(), rows.begin(), rows.end());
                 }
             }
+            for (std::size_t k = 0; in.f_KF != nullptr && k < in.f_KF->extents()[0]; ++k) {
+                if (k != in.left_out[i]) {
+                    auto const rows = joined_rows(*in.f_KF, {k});
+                    joined.insert(joined.end(), rows.begin(), rows.end());
+                }
+            }
+            auto out = dense_self_attention(module, own, joined);
+            if (in.F_KF != nullptr) {
+                out = dense_mix(out, joined_rows(*in.F_KF, {0, 1, 2}), in.rows[i], in.alpha);
+            }
+            for (std::size_t t = 0; t < tokens; ++t) {
+                for (std::size_t c = 0; c < channels; ++c) {
+                    F.view()(i, t, c) = static_cast<Real>(out[t][c]);
+                }
+            }
+        }
+        return F;
+    }
+
+    /// The whole second way in, for one place.
+    template <class Real, class Processor>
+    host_features<Real> through_graph(matrix_module<Real> const& module, host_features<Real> const& f,
+                                      std::span<frame_index const> stack, Processor const& processor) {
+        auto const in = inputs_at<host_features<Real>, Real>(processor, place, stack);
+        auto const F = run_graph(module, f, in);
+        if (in.is_recorded) {
+            record_features(processor, place, f, F);
+        }
+        return F;
+    }
+
+    template <class Real, class Processor>
+    host_features<Real> through_callback(matrix_module<Real> const& module, host_features<Real> const& f,
+                                         std::span<frame_index const> stack, Processor const& processor) {
+        call_of<Real> call(place, stack, f, module);
+        return processor(call);
+    }
+
+    template <class Real>
+    bool are_close(host_features<Real> const& a, host_features<Real> const& b) {
+        double greatest = 0;
+        for (std::size_t i = 0; i < a.extents()[0]; ++i) {
+            greatest = std::max(greatest, greatest_difference(a, i, joined_rows(b, {i})));
+        }
+        return greatest <= (sizeof(Real) == 4 ? 1e-6 : 1e-13);
+    }
+
+    /// The greatest difference of two handles' values, in whatever format each keeps them.
+    template <class Real>
+    double greatest_kept_difference(host_features<Real> const& a, host_features<Real> const& b) {
+        REQUIRE(a.extents() == b.extents());
+        double greatest = 0;
+        a.visit([&](auto const& of_a) {
+            b.visit([&](auto const& of_b) {
+                for (std::size_t i = 0; i < a.extents()[0]; ++i) {
+                    for (std::size_t t = 0; t < a.extents()[1]; ++t) {
+                        for (std::size_t c = 0; c < a.extents()[2]; ++c) {
+                            auto const difference =
+                                static_cast<double>(of_a(i, t, c)) - static_cast<double>(of_b(i, t, c));
+                            greatest = std::max(greatest, std::abs(difference));
+                        }
+                    }
+                }
+            });
         });
-    });
-    return greatest;
-}
+        return greatest;
+    }
 
-bool always(attention_place) { return true; }
-bool never(attention_place) { return false; }
+    bool always(attention_place) { return true; }
+    bool never(attention_place) { return false; }
 
-} // namespace
+    } // namespace
 
-TEST_SUITE("injection/feature_io") {
     TEST_CASE("plain attention and recorder and injector can be driven by a static graph") {
         using foreign::handle;
         CHECK(feature_io_processor<plain_attention, handle, float>);
