@@ -30,7 +30,9 @@ genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nl
 set(genrender_components "")
 genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     genrender.hpp
+    core/begin_header.inl
     core/each_target.inl
+    core/end_header.inl
     core/error.hpp
     core/finite.hpp
     core/half_precision.hpp

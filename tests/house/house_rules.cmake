@@ -62,6 +62,15 @@ endforeach()
 foreach(header IN LISTS headers)
     file(READ ${ROOT}/include/genrender/${header} text)
 
+    # The first and the last include of a header put macros of hosts aside and bring them back; they are no lines of its own.
+    set(begin "#pragma once\n\n#include <genrender/core/begin_header.inl>\n\n")
+    set(end "\n#include <genrender/core/end_header.inl>\n")
+    if(NOT header MATCHES "\\.inl$" AND NOT text MATCHES "\n${begin}.*${end}$")
+        violation("${header}: does not begin with begin_header.inl after #pragma once and end with end_header.inl")
+    endif()
+    string(REPLACE "${begin}" "#pragma once\n\n" text "${text}")
+    string(REPLACE "${end}" "" text "${text}")
+
     string(REGEX MATCHALL "\n" lines "${text}")
     list(LENGTH lines lines)
     if(lines GREATER most_lines)
@@ -132,6 +141,7 @@ foreach(header IN LISTS headers)
     endif()
 endforeach()
 
+list(REMOVE_ITEM bodies core/begin_header.inl core/end_header.inl)
 foreach(body IN LISTS bodies)
     if(NOT all_includes MATCHES "<genrender/${body}>")
         violation("${body}: is included by no header")

@@ -5,7 +5,9 @@ cmake_minimum_required(VERSION 3.25)
 
 # The copy is a small healthy house: a few headers of three components, their tests, one example and a README that quotes it.
 set(file_head "// SPDX-License-Identifier: MIT\n// [GR eq. 4] A header.\n")
-set(header "${file_head}#pragma once\n#include <genrender/core/index.hpp>\n")
+set(begin "#pragma once\n\n#include <genrender/core/begin_header.inl>\n\n")
+set(end "\n#include <genrender/core/end_header.inl>\n")
+set(header "${file_head}${begin}#include <genrender/core/index.hpp>\n${end}")
 set(test "// SPDX-License-Identifier: MIT\n// Its test.\n#include <genrender/blending/thing.hpp>\n\
 TEST_SUITE(\"blending/thing\") {\n")
 set(readme "# A house\n\n| place | what | where |\n|---|---|---|\n")
@@ -22,12 +24,12 @@ string(REGEX REPLACE "\ngenrender_package.*" "" macros "${macros}")
 
 function(write_house)
     file(REMOVE_RECURSE ${COPY})
-    file(WRITE ${COPY}/include/genrender/core/index.hpp "// SPDX-License-Identifier: MIT\n// Indices.\n#pragma once\n\
-#include <vector>\n#include <fast/fast.hpp>\n")
-    file(WRITE ${COPY}/include/genrender/reference/network.hpp "// SPDX-License-Identifier: MIT\n// Network.\n#pragma once\n\
-#include <text/text.hpp>\n#include <fast/fast.hpp>\n")
-    file(WRITE ${COPY}/include/genrender/scene/mesh.hpp "// SPDX-License-Identifier: MIT\n// Mesh.\n#pragma once\n\
-#define GENRENDER_KERNELS <genrender/scene/mesh.inl>\n")
+    file(WRITE ${COPY}/include/genrender/core/index.hpp "// SPDX-License-Identifier: MIT\n// Indices.\n${begin}\
+#include <vector>\n#include <fast/fast.hpp>\n${end}")
+    file(WRITE ${COPY}/include/genrender/reference/network.hpp "// SPDX-License-Identifier: MIT\n// Network.\n${begin}\
+#include <text/text.hpp>\n#include <fast/fast.hpp>\n${end}")
+    file(WRITE ${COPY}/include/genrender/scene/mesh.hpp "// SPDX-License-Identifier: MIT\n// Mesh.\n${begin}\
+#define GENRENDER_KERNELS <genrender/scene/mesh.inl>\n${end}")
     file(WRITE ${COPY}/include/genrender/scene/mesh.inl "// SPDX-License-Identifier: MIT\n// Its body.\n")
     file(WRITE ${COPY}/include/genrender/blending/thing.hpp "${header}")
     file(WRITE ${COPY}/include/genrender/genrender.hpp "// SPDX-License-Identifier: MIT\n// All.\n\
@@ -101,7 +103,10 @@ mutate(${thing} "// SPDX-License-Identifier: MIT\n" "" "thing.hpp: starts with")
 mutate(${thing_test} "// Its test.\n" "" "thing.test.cpp: starts with")
 mutate(tests/support/test_helpers.hpp "" "${file_head}" "is named after a noun")
 string(REPEAT "\n" 300 many_lines)
-mutate(${thing} "" "${many_lines}" "blending/thing.hpp: 304 lines")
+mutate(${thing} "${end}" "${many_lines}${end}" "blending/thing.hpp: 305 lines")
+mutate(${thing} "#include <genrender/core/begin_header.inl>" "" "thing.hpp: does not begin with begin_header.inl")
+mutate(${thing} "#include <genrender/core/end_header.inl>" "" "thing.hpp: does not begin with .* end with end_header.inl")
+mutate(${thing} "" "int after;\n" "thing.hpp: does not begin with .* end with end_header.inl")
 mutate(include/genrender/attic/thing.hpp "" "${file_head}" "'attic' is no room")
 mutate(${thing} "" "#include <genrender/injection/x.hpp>\n" "includes downstream, from injection")
 mutate(${thing} "" "#include <genrender/genrender.hpp>\n" "includes the umbrella genrender.hpp")

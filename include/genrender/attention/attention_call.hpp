@@ -2,6 +2,8 @@
 // [GR eq. 1-3] One run of one self-attention module as its engine hands it to an attention processor.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/sparse_rows.hpp>
@@ -123,3 +125,5 @@ struct attention_call_archetype {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

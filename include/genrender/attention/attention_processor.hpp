@@ -2,6 +2,8 @@
 // [GR sec. 3.1] The front door of attention: what runs in place of a self-attention module.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_call.hpp>
 
 #include <concepts>
@@ -49,3 +51,5 @@ struct attention_processor_archetype {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

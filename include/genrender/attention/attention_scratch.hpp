@@ -3,6 +3,8 @@
 // out.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_tile.hpp>
 #include <genrender/attention/key_value_view.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -49,3 +51,5 @@ strided_view<T, 2> head_of(strided_view<T, 2> view, std::size_t head, std::size_
 
 #define GENRENDER_KERNELS <genrender/attention/attention_scratch.inl>
 #include <genrender/core/each_target.inl>
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.1] Where in a network self-attention happens, and for which guidance branch.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 
 #include <compare>
@@ -44,3 +46,5 @@ struct attention_place {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

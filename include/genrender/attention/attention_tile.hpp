@@ -2,6 +2,8 @@
 // The arithmetic of softmax attention on what fits the nearest cache: some queries, one a vector lane, over some keys.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 
@@ -48,3 +50,5 @@ struct key_tile {
 
 #define GENRENDER_KERNELS <genrender/attention/attention_tile.inl>
 #include <genrender/core/each_target.inl>
+
+#include <genrender/core/end_header.inl>

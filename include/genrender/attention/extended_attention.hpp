@@ -2,6 +2,8 @@
 // [GR eq. 3] Extended attention: every frame of a stack attends to the features of all of its frames.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_call.hpp>
 
 #include <cstddef>
@@ -21,3 +23,5 @@ attention_sources<Features> extended_attention_sources(Features const& K, Featur
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

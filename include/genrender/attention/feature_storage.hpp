@@ -2,6 +2,8 @@
 // The formats in which features of keyframes may be kept until every frame has read them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/core/error.hpp>
 
@@ -80,3 +82,5 @@ Features stored_features(Features x, feature_storage storage) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

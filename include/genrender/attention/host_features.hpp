@@ -2,6 +2,8 @@
 // The handle of features in host memory: a view, and a share in the memory where the library or the engine gave one.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/stack.hpp>
@@ -117,3 +119,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Keys and values that attention reads where they lie: any strides, stored as Real or in 16 bits.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/half_storage.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -96,3 +98,5 @@ struct key_value_view {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

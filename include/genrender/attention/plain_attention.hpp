@@ -2,6 +2,8 @@
 // [GR eq. 2] The processor that leaves a network as it is: every frame attends to itself.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_call.hpp>
 
 #include <cstddef>
@@ -40,3 +42,5 @@ struct plain_attention {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

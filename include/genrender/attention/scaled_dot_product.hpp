@@ -2,6 +2,8 @@
 // [GR eq. 1] Attn(Q; K; V) = Softmax(Q K^T / sqrt(d)) V, over keys and values that lie in several blocks.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_scratch.hpp>
 #include <genrender/attention/attention_tile.hpp>
 #include <genrender/attention/key_value_view.hpp>
@@ -77,3 +79,5 @@ void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
 } // namespace GENRENDER_UNIT
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 4: Baselines] The settings of a run as the paper has them for the methods it compares with.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/pipeline/render_settings.hpp>
 
 namespace genrender {
@@ -17,3 +19,5 @@ render_settings<Real> baseline_settings(render_settings<Real> settings, noise_ki
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 4: Per-Frame] The baseline that denoises every frame by itself.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/pipeline/render_settings.hpp>
 
 #include <utility>
@@ -22,3 +24,5 @@ render_settings<Real> per_frame(render_settings<Real> settings, noise_kind noise
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 4: Pix2Video*] The baseline in which every frame attends to an anchor and to the previous frame.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/baselines/previous_frame_attention.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 
@@ -58,3 +60,5 @@ struct pix2video {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

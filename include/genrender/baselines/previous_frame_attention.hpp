@@ -2,6 +2,8 @@
 // [GR sec. 4: Pix2Video*] The processor in which every frame attends to the anchor and to the previous frame.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
@@ -102,3 +104,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 4: TokenFlow*] Which tokens of the two nearest keyframes a frame takes over, as a sparse map.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/correspondence/reproject.hpp>
@@ -117,3 +119,5 @@ propagation_plan<Real> make_propagation_plan(Map const& map, std::span<frame_ind
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

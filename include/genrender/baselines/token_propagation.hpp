@@ -2,6 +2,8 @@
 // [GR sec. 4: TokenFlow*] The processor that skips self-attention and takes over the keyframes' outputs instead.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
@@ -84,3 +86,5 @@ void record_features(token_propagation<Features, Real> const&, attention_place, 
                      std::type_identity_t<Features> const&) {}
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

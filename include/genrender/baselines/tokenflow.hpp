@@ -2,6 +2,8 @@
 // [GR sec. 4: TokenFlow*] The baseline that skips self-attention between keyframes and interpolates their outputs.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/baselines/propagation_plan.hpp>
 #include <genrender/baselines/token_propagation.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
@@ -62,3 +64,5 @@ struct tokenflow {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

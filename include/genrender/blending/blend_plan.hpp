@@ -3,6 +3,8 @@
 // tokens.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/blending/texel_weights.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/correspondence/reproject.hpp>
@@ -188,3 +190,5 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.2] The kernel of blending: applies a plan's sparse rows to recorded features, fused with the mix of eq. 6.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/half_storage.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/sparse_rows.hpp>
@@ -83,3 +85,5 @@ void mix_rows(strided_view<Real, 2> F, strided_view<Stored, 3> F_KF,
 } // namespace GENRENDER_UNIT
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.2] How a texel mixes the keyframes that see it: average, first fill, and the mean of both.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <cstddef>
 
 namespace genrender {
@@ -36,3 +38,5 @@ constexpr Real unified_weight(std::size_t position, Real average, Real first_fil
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Whether numbers are NaN or infinite, told by their bits: -ffast-math lets a compiler take is_finite for true.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 
 #include <array>
@@ -51,3 +53,5 @@ constexpr bool is_nan(Real const& x) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [IEEE 754-2019 sec. 3.6] The 16-bit storage formats of weights and features, to and from float.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <bit>
 #include <cstdint>
 
@@ -48,3 +50,5 @@ constexpr std::uint16_t half_of_float(float value) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

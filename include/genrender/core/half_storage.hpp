@@ -2,6 +2,8 @@
 // Numbers of 16 bits as kernels read them, whatever type the engine has for them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/half_precision.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -58,3 +60,5 @@ auto to_bits_view(strided_view<Stored, Rank> const& view) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

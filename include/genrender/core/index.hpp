@@ -2,6 +2,8 @@
 // The index types: what counts frames, pixels, tokens and texels, and the extents of a grid of them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <array>
 #include <compare>
 #include <cstddef>
@@ -51,3 +53,5 @@ struct grid_extents {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

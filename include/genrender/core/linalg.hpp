@@ -2,6 +2,8 @@
 // The one door to Eigen: views as maps, so that matrix products run on memory that stays where it is.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/half_storage.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -65,3 +67,5 @@ genrender::strided_view<Real const, 2> to_view(Matrix<Real, Rows, Columns, Optio
 }
 
 } // namespace Eigen
+
+#include <genrender/core/end_header.inl>

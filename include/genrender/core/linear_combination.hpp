@@ -2,6 +2,8 @@
 // Sums of factors times numbers, element by element and once over memory: what samplers and guidance are made of.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 
@@ -61,3 +63,5 @@ void linear_combination(strided_view<Real, Rank> out, std::array<Real, Terms> co
 } // namespace GENRENDER_UNIT
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The parallel loop: the one customisation point through which the library uses more than one thread.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <algorithm>
 #include <atomic>
 #include <concepts>
@@ -177,3 +179,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -3,6 +3,8 @@
 // 2011).
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -100,3 +102,5 @@ inline double normal_value(std::uint64_t seed, random_stream stream, random_addr
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

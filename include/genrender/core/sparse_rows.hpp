@@ -2,6 +2,8 @@
 // A sparse linear map between token rows as three plain arrays, which an engine can hand to its own gather operation.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -22,3 +24,5 @@ struct sparse_rows {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // A contiguous block of elements that the library owns where it must: projected keys, recorded features, scratch.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 
 #include <algorithm>
@@ -103,3 +105,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

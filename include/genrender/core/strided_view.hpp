@@ -2,6 +2,8 @@
 // The view at every public door: a pointer, extents and signed strides over memory that stays its owner's.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 
 #include <array>
@@ -180,3 +182,5 @@ void copy(strided_view<T, Rank> to, in_view<T, Rank> from) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The one door to xtensor: the stacks of the built-in path (latents and maps), and their views.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 
 // xtensor moved its headers into folders with release 0.26.
@@ -50,3 +52,5 @@ auto to_view(xtensor_container<Storage, Rank, layout_type::row_major, Tag> const
 }
 
 } // namespace xt
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Which vector instructions the kernels use: compiled for several targets in one translation unit, chosen as they run.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/vector_unit.hpp>
 
@@ -172,3 +174,5 @@ inline void force_vector_target(std::optional<vector_target> target) {
 
 /// The same for the target at which kernels run now.
 #define GENRENDER_KERNEL(where, ...) GENRENDER_KERNEL_OF(::genrender::chosen_vector_target(), where, __VA_ARGS__)
+
+#include <genrender/core/end_header.inl>

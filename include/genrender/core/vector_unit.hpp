@@ -2,6 +2,8 @@
 // The flags of a translation unit as a name, and the vector targets that its kernels are compiled for besides.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 // Objects of one program may be compiled with different flags. Code that follows the flags must then not have the same
 // name in both, or the linker keeps one for all. So what a kernel is made of lies in a namespace named after the flags,
 // GENRENDER_UNIT, and so do the functions that choose between its targets. It is an inline namespace: nobody spells it.
@@ -125,3 +127,5 @@
 #else
 #define GENRENDER_COMPILES_V3 0
 #endif
+
+#include <genrender/core/end_header.inl>

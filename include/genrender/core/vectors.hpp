@@ -2,6 +2,8 @@
 // The vectors of a target as C++ types, for kernels that no compiler vectorises by itself: one vocabulary for all.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/half_storage.hpp>
 #include <genrender/core/vector_target.hpp>
 
@@ -60,3 +62,5 @@ inline constexpr float exponential_coefficients<float>[] = {
 
 #define GENRENDER_KERNELS <genrender/core/widening.inl>
 #include <genrender/core/each_target.inl>
+
+#include <genrender/core/end_header.inl>

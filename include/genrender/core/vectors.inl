@@ -54,6 +54,17 @@ GENRENDER_ALWAYS_INLINE inline To bits_as(From const& from) {
     return to;
 }
 
+/// `value`, of which -ffast-math must not know where it comes from: sums that round on purpose would be folded.
+template <class Vector>
+GENRENDER_ALWAYS_INLINE inline Vector as_written(Vector value) {
+#if defined(__FAST_MATH__) && defined(__x86_64__)
+    __asm__("" : "+v"(value));
+#elif defined(__FAST_MATH__) && defined(__aarch64__)
+    __asm__("" : "+w"(value));
+#endif
+    return value;
+}
+
 /// A `Vector` from as many elements at any address.
 template <class Vector, class T>
 GENRENDER_ALWAYS_INLINE inline Vector load_as(T const* from) {
@@ -214,8 +225,8 @@ GENRENDER_ALWAYS_INLINE inline lanes<Real> exponential_2(std::type_identity_t<la
     constexpr auto& c = exponential_coefficients<Real>;
 
     x = greater<Real>(spread(least), x);
-    auto const whole = x + rounder;
-    auto const rest = x - (whole - rounder);
+    auto const whole = as_written(x + rounder);
+    auto const rest = x - as_written(whole - rounder);
     constexpr auto degree = sizeof c / sizeof *c - 1;
     auto power = spread(c[degree]);
     unrolled<degree>([&](auto i) GENRENDER_ALWAYS_INLINE { power = power * rest + c[degree - 1 - i]; });

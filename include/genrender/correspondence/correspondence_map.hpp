@@ -2,6 +2,8 @@
 // [GR sec. 3.2] The front door of correspondence: which surface point a token shows, and which token shows it.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 
 #include <concepts>
@@ -91,3 +93,5 @@ struct correspondence_map_archetype {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.2] One correspondence map per feature resolution of a network.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/core/error.hpp>
 
@@ -41,3 +43,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

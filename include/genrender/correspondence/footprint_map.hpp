@@ -3,6 +3,8 @@
 // point lies under a cell of the feature map, however large the surface appears.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
@@ -237,3 +239,5 @@ footprint_map(Maps const&, grid_extents, footprint_map_settings const& = {}, Loo
     -> footprint_map<Maps::dimensions>;
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // What is kept of a frame's maps to tell which of its tokens show a surface point.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/kept_samples.hpp>
@@ -190,3 +192,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The pixels of a frame that speak for an object there, and which of them shows a point of it.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/correspondence/sample_grid.hpp>
 #include <genrender/correspondence/sample_tree.hpp>
@@ -144,3 +146,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

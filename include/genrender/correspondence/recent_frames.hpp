@@ -2,6 +2,8 @@
 // What is made of frames and costs too much memory to have of all: kept of those that were asked for last.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 
 #include <algorithm>
@@ -78,3 +80,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.2] Which pixel of the full-resolution maps stands for a token of a feature map.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 
@@ -72,3 +74,5 @@ std::optional<pixel> representative_pixel(Maps const& maps, frame_index frame, g
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

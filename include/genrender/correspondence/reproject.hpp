@@ -2,6 +2,8 @@
 // [GR eq. 4] Reprojection of features from one frame to another along the correspondences.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
@@ -51,3 +53,5 @@ std::vector<std::uint8_t> reproject(strided_view<Real, 2> F_j, in_view<Real, 2> 
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // A frame's kept pixels sorted into bins of canonical space, and the bins that they reach.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/correspondence/sample_pack.hpp>
 
 #include <algorithm>
@@ -298,3 +300,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The fast way through a frame's kept pixels: only those around a point are looked at, in single precision.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/vectors.hpp>
 #include <genrender/correspondence/sample_bins.hpp>
 #include <genrender/correspondence/sample_distances.hpp>
@@ -89,3 +91,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

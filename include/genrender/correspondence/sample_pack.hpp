@@ -2,6 +2,8 @@
 // Kept pixels of a frame side by side, with what measures the screen around them in single precision.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/correspondence/surface_footprint.hpp>
 
 #include <array>
@@ -77,3 +79,5 @@ struct alignas(64) sample_pack {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The points nearest to a place in canonical coordinates: a k-d tree of nanoflann's behind a small door.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <nanoflann.hpp>
 
 #include <array>
@@ -97,3 +99,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

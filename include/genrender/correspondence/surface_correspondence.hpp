@@ -2,6 +2,8 @@
 // [GR sec. 3.2] The correspondence that settings choose: by footprints, or by the paper's texels.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/footprint_map.hpp>
@@ -118,3 +120,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

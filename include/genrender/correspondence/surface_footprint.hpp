@@ -2,6 +2,8 @@
 // How much of a surface one pixel covers: derivatives of canonical coordinates along the screen.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 
@@ -125,3 +127,5 @@ std::optional<surface_footprint<Maps::dimensions>> footprint_at(Maps const& maps
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.2] Which point of the full-resolution UV maps stands for a token of a feature map.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
@@ -44,3 +46,5 @@ inline texel texel_of(surface_sample const& sample, texture_resolution const& re
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -3,6 +3,8 @@
 // object.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
@@ -187,3 +189,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

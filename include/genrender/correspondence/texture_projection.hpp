@@ -2,6 +2,8 @@
 // [GR alg. 1: pi_UV, pi_UV^-1] Features of a frame unprojected into a texture, and a texture projected to a frame.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/correspondence/reproject.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
 
@@ -52,3 +54,5 @@ std::vector<std::uint8_t> project(strided_view<Real, 2> F, in_view<Real, 2> T, t
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.2, supplement: effect of texture resolution] How many texels along each side an object's texture has.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
@@ -86,3 +88,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Which tokens of a frame show what the tokens of another show, kept from step to step as far as memory goes.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 
 #include <algorithm>
@@ -128,3 +130,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

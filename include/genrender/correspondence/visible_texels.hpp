@@ -2,6 +2,8 @@
 // [GR sec. 3.2] Which texels a frame sees and which of its tokens speak for them, found in constant time.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 
 #include <algorithm>
@@ -121,3 +123,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // How much colours vary within objects: small where a method blurs, so errors are read against it.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/evaluation/pixel_objects.hpp>
 
@@ -59,3 +61,5 @@ std::optional<double> contrast(strided_view<Real, 4> images, pixel_objects const
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 4] How much the pixels that show one surface point differ between frames.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
@@ -91,3 +93,5 @@ std::optional<double> correspondence_error(strided_view<Real, 4> images, Map con
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

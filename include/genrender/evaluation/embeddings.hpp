@@ -2,6 +2,8 @@
 // [GR sec. 4] Embeddings of all frames and texts, computed once for every metric, and the cosine between two.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
@@ -70,3 +72,5 @@ double cosine_similarity(strided_view<Real, 1> a, in_view<std::remove_const_t<Re
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

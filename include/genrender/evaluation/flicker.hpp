@@ -2,6 +2,8 @@
 // [GR sec. 3.4] What changes between consecutive frames and should not: the background, and the colours as a whole.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/evaluation/pixel_objects.hpp>
 
@@ -88,3 +90,5 @@ std::optional<colour_change> colour_flicker(strided_view<Real, 4> images) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 4, table 1; supplement, table 2] How alike frames are to an encoder of images.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/evaluation/embeddings.hpp>
 
@@ -28,3 +30,5 @@ std::optional<double> frame_consistency(strided_view<Real, 2> embeddings, std::s
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

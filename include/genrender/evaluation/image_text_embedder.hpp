@@ -2,6 +2,8 @@
 // [GR sec. 4: CLIP] The front door of encoders that put images and texts into one space.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 
 #include <concepts>
@@ -47,3 +49,5 @@ struct image_text_embedder_archetype {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // A figure of a table: the mean of several runs and how sure it is.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 
 #include <cmath>
@@ -37,3 +39,5 @@ inline mean_and_error mean_and_error_of(std::span<double const> values) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

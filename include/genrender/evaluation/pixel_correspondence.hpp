@@ -2,6 +2,8 @@
 // [GR sec. 4] Pixels of two frames that show one surface point to a fraction of a pixel: what errors are measured at.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
@@ -188,3 +190,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 4] Which pixels of an image an object fills, which the background, and which lie on a silhouette.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/guidance/cell_extents.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
@@ -94,3 +96,5 @@ void require_images_of(char const* function, strided_view<T, 4> const& images, p
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

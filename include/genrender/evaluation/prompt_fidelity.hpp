@@ -2,6 +2,8 @@
 // [GR sec. 4, table 1] How well frames fit their prompt to an encoder of images and texts.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/evaluation/embeddings.hpp>
 
@@ -23,3 +25,5 @@ std::optional<double> prompt_fidelity(strided_view<Real, 2> embeddings, in_view<
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Whether an encoder finds the prompt of an image among others: classification without a classifier.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/evaluation/embeddings.hpp>
 
@@ -47,3 +49,5 @@ std::optional<double> recognition(strided_view<Real, 2> embeddings, in_view<std:
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

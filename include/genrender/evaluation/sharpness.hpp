@@ -2,6 +2,8 @@
 // How steep colours are within objects, silhouettes left out.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/evaluation/pixel_objects.hpp>
 
@@ -47,3 +49,5 @@ std::optional<double> sharpness(strided_view<Real, 4> images, pixel_objects cons
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // One row of pixels over time: what sticks to the screen draws straight lines, what moves draws curves.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -22,3 +24,5 @@ strided_view<T, 3> time_slice(strided_view<T, 4> images, std::size_t row) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.4] Which cells of a coarser grid show nothing but background: where its statistics may be taken.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
@@ -34,3 +36,5 @@ tensor<std::uint8_t, 3> background_mask(Maps const& maps, grid_extents grid) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

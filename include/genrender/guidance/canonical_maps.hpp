@@ -2,6 +2,8 @@
 // [GR sec. 3] What names a surface point in every frame: texture coordinates, or where the point lies at rest.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -91,3 +93,5 @@ private:
 using position_maps_view = canonical_maps_view<3>;
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

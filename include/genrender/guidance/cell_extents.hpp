@@ -2,6 +2,8 @@
 // [GR sec. 3] The cell of full-resolution map pixels that lies under one token or latent pixel.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
 
@@ -22,3 +24,5 @@ inline grid_extents cell_extents(char const* function, grid_extents map, grid_ex
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] Depth maps of an animation, and the sequence-wide inverse depth that depth-conditioned networks take.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
@@ -79,3 +81,5 @@ inline tensor<float, 3> cell_means(tensor<float, 3> const& map, grid_extents gri
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

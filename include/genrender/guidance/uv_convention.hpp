@@ -2,6 +2,8 @@
 // [GR sec. 3] How another renderer writes UV, and the change to this library's way: v downwards, everything in [0, 1].
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -61,3 +63,5 @@ inline void adopt_uv(strided_view<float, 4> uv, in_view<std::uint8_t, 3> coverag
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

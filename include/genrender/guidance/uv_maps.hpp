@@ -2,6 +2,8 @@
 // [GR sec. 3] UV maps of an animation: for every pixel of every frame, which object it shows and where on its texture.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
@@ -39,3 +41,5 @@ inline uv_maps_view to_uv_view(uv_maps const& maps) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] The view of UV maps through which every room downstream reads them, whoever owns the memory.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/guidance/canonical_maps.hpp>
 
 namespace genrender {
@@ -11,3 +13,5 @@ namespace genrender {
 using uv_maps_view = canonical_maps_view<2>;
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

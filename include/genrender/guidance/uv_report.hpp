@@ -2,6 +2,8 @@
 // [GR sec. 3] What is unusual about given UV maps, in numbers, before they are worked with.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/guidance/uv_maps_view.hpp>
@@ -56,3 +58,5 @@ inline uv_report inspect(uv_maps_view const& maps) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

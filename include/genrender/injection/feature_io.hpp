@@ -2,6 +2,8 @@
 // [GR alg. 1: Phi as a static graph] The second way in: a graph's extra inputs and outputs at each site.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/injection/injector.hpp>
@@ -121,3 +123,5 @@ template <class Features>
 void record_features(feature_io_processor_archetype const&, attention_place, Features const&, Features const&);
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR eq. 1-6] The attention call of an engine whose features lie in host memory: all it brings is its projections.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/attention/host_features.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
@@ -115,3 +117,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

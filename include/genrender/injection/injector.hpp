@@ -2,6 +2,8 @@
 // [GR alg. 1: Phi(z^i, D^i, c, f_KF, F_bar^i)] The processor of the injected pass: eq. 5, attention, eq. 6.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/injection/pre_attention.hpp>
@@ -124,3 +126,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

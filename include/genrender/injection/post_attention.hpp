@@ -2,6 +2,8 @@
 // [GR eq. 6] Post-attention injection: F_out = alpha F_bar + (1 - alpha) F_hat where keyframes cover a token.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/core/finite.hpp>
 
@@ -36,3 +38,5 @@ void post_attention(strided_view<Real, 2> F_hat, strided_view<Stored, 3> F_KF,
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR eq. 5] Pre-attention injection: a frame attends to its own features and to the keyframes'.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/core/error.hpp>
 
@@ -49,3 +51,5 @@ pre_attention_sources(Features const& K, Features const& V, std::size_t own, Fea
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] How finely a canonical coordinate was stored: its distinct values, and the quantum they are multiples of.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -103,3 +105,5 @@ inline coordinate_levels levels_of(std::vector<float> values, std::vector<float>
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] Maps without what no search can take: pixels whose canonical coordinates are not finite.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
@@ -37,3 +39,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

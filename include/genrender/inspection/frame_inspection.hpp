@@ -2,6 +2,8 @@
 // [GR sec. 3] One frame's share of what is told of its objects: counts of all pixels, samples of neighbours and claims.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
@@ -188,3 +190,5 @@ std::map<object_index, object_check> compare_pixels(Maps const& maps, frame_inde
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.2] How well tokens of one feature resolution find their partners in the keyframes, measured at the maps'.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
@@ -162,3 +164,5 @@ grid_check check_grid(Map const& map, Maps const& maps, std::vector<frame_index>
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -3,6 +3,8 @@
 // frame.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
 #include <genrender/inspection/frame_inspection.hpp>
@@ -173,3 +175,5 @@ map_check check_maps(Maps const& maps, map_check_settings const& settings = {}, 
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] What the check of maps amounts to: its recommendations, and from which figure on there is one.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/inspection/map_check.hpp>
 #include <genrender/inspection/recommendation.hpp>
 
@@ -139,3 +141,5 @@ inline std::vector<recommendation> recommendations_on(map_check const& check, gr
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

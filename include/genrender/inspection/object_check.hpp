@@ -2,6 +2,8 @@
 // [GR sec. 3] What can be told of an object and of a frame by the maps alone.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/inspection/coordinate_levels.hpp>
 
@@ -52,3 +54,5 @@ struct frame_check {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

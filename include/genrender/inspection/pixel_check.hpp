@@ -3,6 +3,8 @@
 // twice.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
@@ -135,3 +137,5 @@ std::optional<point_claims> claims_on(Maps const& maps, screen_search<Maps> cons
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Some of a map's pixels, spread evenly: what questions about a large map are asked of.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 
 #include <algorithm>
@@ -53,3 +55,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] What is known before a run: the maps' defects, how well each feature grid finds its partners, what to do.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/surface_correspondence.hpp>
@@ -192,3 +194,5 @@ preflight_report preflight(Maps const& maps, std::vector<grid_extents> grids, re
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] A finding of the pre-flight: what was found, where and how much of it. Its sentence is the program's.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 
 #include <array>
@@ -70,3 +72,5 @@ struct recommendation {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

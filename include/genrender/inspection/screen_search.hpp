@@ -2,6 +2,8 @@
 // Where on the screen of a frame a surface point is seen, to a fraction of a pixel of the full-resolution maps.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/sample_tree.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
@@ -126,3 +128,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

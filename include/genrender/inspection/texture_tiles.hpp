@@ -2,6 +2,8 @@
 // [GR sec. 3] Which parts of a texture are used in several of its repetitions.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -76,3 +78,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR alg. 1: KF] The keyframes of a step, drawn and shuffled; a pure function of seed and step.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/random.hpp>
@@ -77,3 +79,5 @@ inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR alg. 1: f_KF, F_KF] The keyframes' features of one step, by attention site and guidance branch.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/error.hpp>
 
@@ -57,3 +59,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR alg. 1: f_KF, F_KF <- Phi(z_KF, D_KF, c)] The processor of the keyframe pass: extended attention, features kept.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/extended_attention.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/plain_attention.hpp>
@@ -83,3 +85,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

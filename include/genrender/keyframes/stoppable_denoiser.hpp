@@ -3,6 +3,8 @@
 // not to do again for a keyframe what that pass has done.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/sampling/denoiser.hpp>
 
 #include <concepts>
@@ -92,3 +94,5 @@ std::vector<std::optional<site_index>> last_sites(Phi const& phi, TakesPart cons
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

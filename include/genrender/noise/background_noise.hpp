@@ -2,6 +2,8 @@
 // [GR sec. 3.3] What receives noise where there is no object: the screen, or the surroundings that a camera turns in.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/random.hpp>
@@ -69,3 +71,5 @@ inline double screen_noise(std::uint64_t seed, background_noise kind, frame_inde
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // White noise over an area, divided among parts of the area so that nothing of its statistics is lost.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -23,3 +25,5 @@ inline void bridge(double W, std::span<double const> root_shares, std::span<doub
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.3, alg. 1: z_T] Initial latents before scaling: UV noise, and the paper's ablations of it.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/noise/background_noise.hpp>
@@ -139,3 +141,5 @@ void initial_noise(strided_view<Real, 4> z, Maps const& maps, std::span<frame_in
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Parts of pixels that look at cells of noise, and how they are parted by the children of a cell.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -78,3 +80,5 @@ sort_by_child(std::span<noise_request<D>> to, std::type_identity_t<std::span<noi
 } // namespace detail
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

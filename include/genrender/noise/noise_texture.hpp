@@ -2,6 +2,8 @@
 // [GR sec. 3.3] z_UV ~ N(0, I): Gaussian noise that lives on the objects' textures, computed where it is looked at.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/random.hpp>
 
@@ -24,3 +26,5 @@ struct noise_texture {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Gaussian white noise over a space of canonical coordinates, at every resolution at once and never stored.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/random.hpp>
@@ -263,3 +265,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

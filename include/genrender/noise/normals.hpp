@@ -3,6 +3,8 @@
 // in the last place.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/random.hpp>
 #include <genrender/core/vectors.hpp>
 
@@ -40,3 +42,5 @@ inline void normals_of(std::span<std::array<std::uint32_t, 4> const> counters, s
 } // namespace GENRENDER_UNIT
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -34,7 +34,7 @@ struct normal_pairs {
 private:
     /// Numbers below 2^52: their bits are those of the fraction of 2^52 + number.
     GENRENDER_ALWAYS_INLINE static reals as_reals(words const& numbers) {
-        return bits_as<reals>(numbers | 0x4330000000000000U) - 0x1p52;
+        return as_written(bits_as<reals>(numbers | 0x4330000000000000U) - 0x1p52);
     }
 
     /// The terms of the series of sin(x) / x and cos(x) in x^2, which beyond are below 1e-16 for x <= pi / 4.

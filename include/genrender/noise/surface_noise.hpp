@@ -2,6 +2,8 @@
 // [GR sec. 3.3] UV noise that stays white: every latent pixel sums the noise of the part of the surface that it sees.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/random.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
@@ -153,3 +155,5 @@ void surface_noise(strided_view<Real, 3> z, Maps const& maps, frame_index i, std
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3.4] Mean and deviation of each channel of a frame's latents over the background.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 
@@ -45,6 +47,8 @@ T const* neighbouring_values(strided_view<T const, 2> const& view, std::vector<T
 #include <genrender/core/each_target.inl>
 
 namespace genrender {
+
+inline namespace GENRENDER_UNIT {
 
 /// Statistics of z [channels, height, width] over the pixels whose `mask` [height, width] is not 0: mean and
 /// sqrt(unbiased variance + epsilon). With fewer than 2 pixels there is no variance: `pixels` says so and means and
@@ -92,4 +96,8 @@ channel_statistics<Real> masked_statistics(strided_view<Real const, 3> z, stride
     return result;
 }
 
+} // namespace GENRENDER_UNIT
+
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR alg. 1: the body of the loop] The paper's method: keyframes, blending along the correspondences, injection.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
@@ -78,3 +80,5 @@ struct generative_rendering {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

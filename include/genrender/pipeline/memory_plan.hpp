@@ -2,6 +2,8 @@
 // What a run will take, said before it starts: bytes by what holds them, FLOPs and bytes moved by what moves them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/render_settings.hpp>
@@ -221,3 +223,5 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

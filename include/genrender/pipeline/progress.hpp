@@ -2,6 +2,8 @@
 // How far a run is and what is left of it, told to an observer that can end it.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 
 #include <chrono>
@@ -75,3 +77,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -3,6 +3,8 @@
 // denoiser.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/guidance/background_mask.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
@@ -100,6 +102,7 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
     auto const total = frames_to_denoise(settings, N, method);
 
     auto const start = std::chrono::steady_clock::now();
+    report.set_vector_target(chosen_vector_target());
 
     // z_UV ~ N(0, I); z = z_T = sigma_T pi_UV(z_UV)
     auto z = latents<Real>::from_shape({N, phi.latent_channels(), grid.height, grid.width});
@@ -189,3 +192,5 @@ auto render(Phi const&, Maps const&, render_settings<Real> const&, Rest const&..
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

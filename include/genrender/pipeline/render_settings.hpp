@@ -2,6 +2,8 @@
 // [GR sec. 3, 4] Everything about a run that is neither the scene nor the network, with the paper's values as defaults.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/blend_plan.hpp>
@@ -68,3 +70,5 @@ bool is_in_window(std::size_t step, std::size_t steps, Real begin, std::type_ide
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

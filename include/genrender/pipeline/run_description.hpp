@@ -2,6 +2,8 @@
 // What decides the cost of a run beside its settings: the denoiser's sites and grids, frames, maps, threads.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/guidance/canonical_maps.hpp>
@@ -72,3 +74,5 @@ run_description describe_run(Phi const& phi, Maps const& maps, std::size_t calls
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

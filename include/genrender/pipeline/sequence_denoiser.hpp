@@ -2,6 +2,8 @@
 // [GR alg. 1: the body of the loop] A denoiser of single frames becomes a denoiser of the whole animation.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/finite.hpp>
 #include <genrender/normalization/adain.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
@@ -92,3 +94,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -3,6 +3,8 @@
 // sequence_method is made of.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/core/parallel.hpp>
@@ -235,3 +237,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3, 4] The front door of methods: how all frames of an animation are denoised at one noise level.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 
@@ -43,3 +45,5 @@ concept sequence_method = std::copyable<Method> &&
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

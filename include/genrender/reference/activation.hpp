@@ -2,6 +2,8 @@
 // The pointwise functions between layers: SiLU and the exact GELU.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/vectors.hpp>
 
 #include <algorithm>
@@ -54,3 +56,5 @@ Real gelu(Real x) {
 } // namespace GENRENDER_UNIT
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

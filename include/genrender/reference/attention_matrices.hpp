@@ -2,6 +2,8 @@
 // The matrices of an attention module: queries of the features, keys and values of what they attend to, the way out.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/reference/linear.hpp>
@@ -48,3 +50,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

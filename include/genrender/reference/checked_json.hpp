@@ -2,6 +2,8 @@
 // JSON texts in which no key of an object occurs twice.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 
 #include <nlohmann/json.hpp>
@@ -38,3 +40,5 @@ inline nlohmann::json checked_json(std::string const& text, std::string const& p
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // A checked reader of a config.json: an object of options, each of which somebody must know.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/reference/checked_json.hpp>
 
@@ -170,3 +172,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

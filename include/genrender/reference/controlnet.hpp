@@ -2,6 +2,8 @@
 // The network that looks at the depth map (Zhang et al. 2023), layer for layer diffusers' ControlNetModel.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/reference/activation.hpp>
 #include <genrender/reference/conv2d.hpp>
 #include <genrender/reference/unet_encoder.hpp>
@@ -106,3 +108,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Convolution with 3x3 or 1x1 kernels as one matrix product over neighbourhoods that are read where they lie.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -91,3 +93,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

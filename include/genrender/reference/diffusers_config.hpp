@@ -2,6 +2,8 @@
 // The architecture of a network as diffusers writes it: config.json of UNet and ControlNet, scheduler_config.json.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/unet_config.hpp>
 
@@ -229,3 +231,5 @@ inline nlohmann::json scheduler_json(unet_config const& config) {
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // A folder of networks in diffusers' layout, as save_pretrained writes it and as models are published.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/diffusers_config.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
@@ -121,3 +123,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The ControlNet's features of the depth of every frame: kept where they fit into memory, made anew where they do not.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
@@ -83,3 +85,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR alg. 1: Phi] What the decoder of a UNet starts from, kept for frames that are denoised again at the same z.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/reference/unet_encoder.hpp>
@@ -104,3 +106,5 @@ std::size_t encoded_bytes(unet_config const& config, grid_extents latent_grid) {
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // A stack of feature maps between two layers, channels of a token side by side, as attention wants them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -80,3 +82,5 @@ void concatenate(strided_view<Real, 2> out, in_view<Real, 2> first, in_view<Real
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

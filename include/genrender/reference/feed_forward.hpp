@@ -2,6 +2,8 @@
 // The gated feed-forward layer of a transformer block: GEGLU (Shazeer 2020).
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -53,3 +55,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

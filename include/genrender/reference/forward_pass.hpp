@@ -2,6 +2,8 @@
 // What one run of a network hands down to its layers beside the features.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -62,3 +64,5 @@ struct forward_pass {
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

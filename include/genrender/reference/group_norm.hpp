@@ -2,6 +2,8 @@
 // GroupNorm (Wu and He 2018) of feature maps whose channels lie side by side, and the SiLU that follows it.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
@@ -131,3 +133,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

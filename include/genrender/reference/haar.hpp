@@ -2,6 +2,8 @@
 // The stand-in for an image autoencoder: one level of the orthonormal Haar transform (Haar 1910).
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 
 #include <array>
@@ -86,3 +88,5 @@ void haar_decode(strided_view<Real, 3> image, in_view<Real, 3> latent) {
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // LayerNorm (Ba et al. 2016) of feature maps whose channels lie side by side.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 #include <genrender/reference/weights.hpp>
@@ -46,3 +48,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

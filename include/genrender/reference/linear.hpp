@@ -2,6 +2,8 @@
 // The fully connected layer: out = in W^T + b.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/reference/weight_panels.hpp>
@@ -68,3 +70,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

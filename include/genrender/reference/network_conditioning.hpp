@@ -2,6 +2,8 @@
 // What the reference network is told beside the latents: hints of all frames, the prompt, how strongly to follow them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/stack.hpp>
@@ -84,3 +86,5 @@ stack<Real, 4> hint_of(unet_config const& config, strided_view<float const, 3> i
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // A feature map within a ring of zeros, over which a 3x3 kernel passes without asking where the map ends.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -48,3 +50,5 @@ struct padded_map {
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

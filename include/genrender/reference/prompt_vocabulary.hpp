@@ -2,6 +2,8 @@
 // The few words that the reference network understands, and the tokens they become.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/reference/weights.hpp>
@@ -104,3 +106,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 4: CLIP] A small encoder of images and prompts for the metrics, trained on renders of known prompts.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -161,3 +163,5 @@ namespace genrender {
 using reference::reference_embedder;
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

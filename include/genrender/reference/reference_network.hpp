@@ -2,6 +2,8 @@
 // [GR sec. 3.1] Stable Diffusion in miniature: a UNet and a depth ControlNet on the CPU, a model of denoiser.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/parallel.hpp>
@@ -238,13 +240,9 @@ private:
     }
 
     static void copy_scaled(strided_view<Real, 3> to, strided_view<Real const, 3> from, Real factor) {
-        for (std::size_t channel = 0; channel < to.extent(0); ++channel) {
-            for (std::size_t row = 0; row < to.extent(1); ++row) {
-                for (std::size_t column = 0; column < to.extent(2); ++column) {
-                    to(channel, row, column) = factor * from(channel, row, column);
-                }
-            }
-        }
+        for_each(to, [&](std::size_t channel, std::size_t row, std::size_t column) {
+            to(channel, row, column) = factor * from(channel, row, column);
+        });
     }
 
     /// The time that the network was told of during training for latents of this noise level.
@@ -302,3 +300,5 @@ namespace genrender {
 using reference::reference_network;
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // All that makes a network: its architecture and the parameters of UNet, ControlNet and prompt table.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/reference/diffusers_folder.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
@@ -95,3 +97,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

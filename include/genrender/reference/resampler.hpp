@@ -2,6 +2,8 @@
 // The steps between levels of the UNet: a convolution of stride 2 down, nearest neighbours and a convolution up.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/strided_view.hpp>
 #include <genrender/reference/conv2d.hpp>
 #include <genrender/reference/feature_maps.hpp>
@@ -76,3 +78,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The residual block of the UNet (diffusers' ResnetBlock2D): two convolutions, told of the time between them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/stack.hpp>
 #include <genrender/reference/conv2d.hpp>
 #include <genrender/reference/feature_maps.hpp>
@@ -83,3 +85,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

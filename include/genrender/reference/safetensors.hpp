@@ -2,6 +2,8 @@
 // A checked reader and a small writer of the safetensors format: named tensors behind a JSON header.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/reference/checked_json.hpp>
 #include <genrender/core/half_precision.hpp>
@@ -277,3 +279,5 @@ inline void write_safetensors(std::string const& path, std::map<std::string, saf
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

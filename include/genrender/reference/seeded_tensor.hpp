@@ -2,6 +2,8 @@
 // Random parameters under which the untrained reference network paints: smooth kernels, a palette, every input felt.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/random.hpp>
 
 #include <array>
@@ -148,3 +150,5 @@ inline std::vector<float> seeded_tensor(std::uint64_t seed, std::string_view net
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

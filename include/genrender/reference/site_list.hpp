@@ -2,6 +2,8 @@
 // The self-attention modules of the reference network, numbered while its layers are built.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/index.hpp>
 
@@ -39,3 +41,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

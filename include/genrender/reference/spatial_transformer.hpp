@@ -2,6 +2,8 @@
 // Transformer blocks between feature maps (diffusers' Transformer2DModel, as in Stable Diffusion 1.x and 2.x).
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/stack.hpp>
 #include <genrender/reference/feature_maps.hpp>
 #include <genrender/reference/forward_pass.hpp>
@@ -60,3 +62,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // How a network learns of the noise level: sines and cosines of the time, and a small perceptron behind them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/reference/activation.hpp>
 #include <genrender/reference/linear.hpp>
 #include <genrender/reference/unet_config.hpp>
@@ -56,3 +58,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The transformer of the UNet: self-attention through the processor, attention to the prompt, a feed-forward layer.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
 #include <genrender/core/stack.hpp>
@@ -115,3 +117,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The denoising UNet of Stable Diffusion (Rombach et al. 2022), layer for layer diffusers' UNet2DConditionModel.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/reference/conv2d.hpp>
 #include <genrender/reference/group_norm.hpp>
 #include <genrender/reference/padded_map.hpp>
@@ -139,3 +141,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The architecture of a denoising UNet and the ControlNet beside it, in the field names of diffusers' config.json.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/sampling/preconditioning.hpp>
@@ -93,3 +95,5 @@ inline void require_latent_grid(unet_config const& config, grid_extents grid) {
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // The way down and the bottom of the UNet, which the ControlNet has too.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/reference/conv2d.hpp>
 #include <genrender/reference/feature_maps.hpp>
 #include <genrender/reference/forward_pass.hpp>
@@ -131,3 +133,5 @@ inline std::vector<std::size_t> skip_channels(unet_config const& config) {
 }
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

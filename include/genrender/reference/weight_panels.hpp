@@ -2,6 +2,8 @@
 // The matrix product of all layers: weights in panels two registers wide, features read where they lie.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -127,3 +129,5 @@ private:
 };
 
 } // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>

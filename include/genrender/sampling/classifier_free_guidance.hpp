@@ -2,6 +2,8 @@
 // Classifier-free guidance (Ho and Salimans 2022, eq. 6): from the unconditional estimate past the conditional one.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/linear_combination.hpp>
@@ -30,3 +32,5 @@ void guide(strided_view<Real, 4> out, in_view<Real, 4> x0_uncond, in_view<Real, 
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

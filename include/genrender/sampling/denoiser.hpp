@@ -2,6 +2,8 @@
 // [GR alg. 1: Phi] The front door of networks: estimates clean latents of a stack of frames.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -101,3 +103,5 @@ struct denoiser_archetype {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

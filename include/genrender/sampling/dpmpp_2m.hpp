@@ -2,6 +2,8 @@
 // [DPM++ alg. 2] DPM-Solver++(2M) (Lu et al. 2022): one evaluation a step, second order by remembering the last one.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/sampling/euler.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
@@ -64,3 +66,5 @@ Latents dpmpp_2m(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [EDM alg. 1] Euler's method: one evaluation a step, first order. Without its lines 6 to 8, which make it Heun's.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/linear_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
@@ -77,3 +79,5 @@ Latents euler(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_st
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [EDM alg. 1] Heun's method: two evaluations a step, second order.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/sampling/euler.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
@@ -60,3 +62,5 @@ Latents heun(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_ste
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

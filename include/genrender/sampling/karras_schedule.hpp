@@ -2,6 +2,8 @@
 // [EDM eq. 5] The noise levels a sampler visits, dense where the noise is low.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 
@@ -47,3 +49,5 @@ std::vector<Real> karras_schedule(std::size_t steps, Real sigma_min = Real(0.029
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

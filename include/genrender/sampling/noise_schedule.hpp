@@ -2,6 +2,8 @@
 // [EDM sec. 5, table 1] The noise levels a network was trained at, and the continuous time between them.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 
@@ -102,3 +104,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [EDM eq. 7] From what a raw network predicts to the clean estimate D(z, sigma) = c_skip z + c_out F(c_in z, t).
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/linear_combination.hpp>
@@ -87,3 +89,5 @@ void to_clean(strided_view<Real, 4> out, prediction predicted, in_view<Real, 4> 
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [EDM alg. 1] The samplers by name, and what each costs.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/sampling/dpmpp_2m.hpp>
 #include <genrender/sampling/euler.hpp>
@@ -54,3 +56,5 @@ inline std::size_t evaluations(sampler method, std::size_t steps) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [EDM alg. 1] What every sampler takes: a clean estimate to follow, the noise levels to visit, a word after each step.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 
@@ -59,3 +61,5 @@ void require_noise_levels(char const* function, Sigmas const& sigmas) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] The concept of an animated scene: what the camera sees and where every surface is, frame by frame.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/index.hpp>
 #include <genrender/scene/camera.hpp>
 #include <genrender/scene/mesh.hpp>
@@ -64,3 +66,5 @@ concept animation = requires(Animation const& scene, frame_index i) {
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

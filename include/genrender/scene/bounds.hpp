@@ -2,6 +2,8 @@
 // The box, aligned to the axes, around a set of points.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 
 #include <glm/common.hpp>
@@ -33,3 +35,5 @@ inline bounds bounds_of(std::span<glm::vec3 const> positions) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

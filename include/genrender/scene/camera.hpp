@@ -2,6 +2,8 @@
 // [GR sec. 3] A pinhole camera: where it stands, how wide it sees, and the ray through each pixel's centre.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
@@ -101,3 +103,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] One frame of an animated scene as UV, object, coverage and depth, written through views.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -188,3 +190,5 @@ inline void rasterize_frame(frame_guidance_view const& to, posed_scene const& sc
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] A triangle mesh with texture coordinates: the shape of one object, in its own space.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 
@@ -94,3 +96,5 @@ inline void place_uvs(mesh& surface, glm::vec2 lower, glm::vec2 upper) {
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

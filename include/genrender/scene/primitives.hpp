@@ -2,6 +2,8 @@
 // Simple surfaces whose UVs do not overlap: plane, disk, box, and surfaces of revolution (sphere, capsule, cylinder).
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/scene/mesh.hpp>
@@ -208,3 +210,5 @@ inline mesh make_cylinder(float radius, float height, std::uint32_t segments = 3
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // [GR sec. 3] From an animated scene to its guidance: UV maps and depth maps of every frame.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
@@ -66,3 +68,5 @@ rendered_guidance rasterize(Animation const& scene, grid_extents grid, Loop cons
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // Linear blend skinning: vertices that follow the joints of a skeleton (Magnenat-Thalmann et al., 1988).
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 
@@ -123,3 +125,5 @@ inline std::vector<glm::vec3> skin(std::span<glm::vec3 const> rest, std::span<jo
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

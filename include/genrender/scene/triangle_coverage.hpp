@@ -2,6 +2,8 @@
 // Which points a triangle covers as seen through a pinhole (Olano & Greer, Graphics Hardware 1997).
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -71,3 +73,5 @@ private:
 };
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>

@@ -2,6 +2,8 @@
 // How much of a mesh's texture is claimed by more than one place of its surface.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/error.hpp>
 #include <genrender/scene/mesh.hpp>
 #include <genrender/scene/triangle_coverage.hpp>
@@ -64,3 +66,5 @@ inline uv_overlap count_uv_overlap(mesh const& surface, std::size_t resolution) 
 }
 
 } // namespace genrender
+
+#include <genrender/core/end_header.inl>
