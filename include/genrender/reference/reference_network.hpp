@@ -13,6 +13,7 @@
 #include <genrender/reference/encoded_frames.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/reference_weights.hpp>
+#include <genrender/reference/stopping_processor.hpp>
 #include <genrender/reference/unet.hpp>
 #include <genrender/sampling/classifier_free_guidance.hpp>
 #include <genrender/sampling/denoiser.hpp>
@@ -32,29 +33,6 @@
 #include <vector>
 
 namespace genrender::reference {
-
-namespace internal {
-
-/// Ends a run of a network behind its last wanted site.
-struct last_site_has_run {};
-
-/// A processor that throws last_site_has_run after it ran at `last`. No layer needs to know that runs may end early.
-template <class Processor>
-struct stopping_processor {
-    Processor* processor;
-    site_index last;
-
-    template <attention_call Call>
-    typename Call::features_type operator()(Call& call) const {
-        auto F = (*processor)(call);
-        if (call.place().site == last) {
-            throw last_site_has_run{};
-        }
-        return F;
-    }
-};
-
-} // namespace internal
 
 /// A UNet with classifier-free guidance and a ControlNet, conditioned for one animation. Its sites are the ControlNet's
 /// self-attention modules (network_kind::control) and then the UNet's, as they run. Features lie in host memory; frames
@@ -120,7 +98,7 @@ public:
     /// 1 with a guidance scale of 1, else 2: the empty prompt, then the prompt.
     std::size_t branches() const { return conditioning_.guidance_scale == 1 ? 1 : 2; }
     /// Number of frames it has hints for.
-    std::size_t frame_count() const { return hints_.size(); }
+    std::size_t frame_count() const { return hints_.frame_count(); }
 
     /// Writes D(z, sigma) [EDM eq. 7] into x0; both [frames, channels, height, width] of the latents, frames[i] being
     /// entry i's place in the animation. The estimate of a frame under plain_attention is the same to the bit whatever
@@ -240,9 +218,13 @@ private:
     }
 
     static void copy_scaled(strided_view<Real, 3> to, strided_view<Real const, 3> from, Real factor) {
-        for_each(to, [&](std::size_t channel, std::size_t row, std::size_t column) {
-            to(channel, row, column) = factor * from(channel, row, column);
-        });
+        for (std::size_t channel = 0; channel < to.extent(0); ++channel) {
+            for (std::size_t row = 0; row < to.extent(1); ++row) {
+                for (std::size_t column = 0; column < to.extent(2); ++column) {
+                    to(channel, row, column) = factor * from(channel, row, column);
+                }
+            }
+        }
     }
 
     /// The time that the network was told of during training for latents of this noise level.
