@@ -4,6 +4,13 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 option(GENRENDER_WARNINGS_AS_ERRORS "Refuse code of this project that warns" OFF)
 set(GENRENDER_SANITIZERS "" CACHE STRING "Value of -fsanitize= for tests and examples: empty, address,undefined or thread")
 
+# What was compiled before is not compiled again, where ccache is installed; precompiled headers need leniency with times.
+find_program(GENRENDER_CCACHE ccache)
+if(GENRENDER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+        CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${GENRENDER_CCACHE})
+endif()
+
 add_library(genrender_developer_flags INTERFACE)
 target_compile_options(genrender_developer_flags INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow

@@ -10,13 +10,17 @@ sh cmake/quickstart.sh WHAT
   demo      render an animation with the built-in network, and the same frame by frame   (build/demo_output)
   evaluate  the paper's tables on the built-in network: every method, baseline and ablation (build/evaluation);
             with --quick one prompt and one seed, with other options those of the program evaluate
-  test      everything that continuous integration checks: g++, clang++ with sanitizers, this machine's vectors,
-            headers, package
+  test      every test but those that are slow by nature: with g++, with clang++ and AddressSanitizer, and those that
+            start threads with ThreadSanitizer
+  slow_checks
+            what continuous integration checks besides: the installed package and each of its headers, what must not
+            compile, what the program must refuse, that the rules of the house catch who breaks them, benchmarks for a
+            moment, clang-format and clang-tidy
   bench     every benchmark beside its floor and its target, as one table (build/bench/benchmarks.md and .json); PyTorch,
             NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
             earlier run, with --no-peers without the programs of others (benchmarks/README.md)
-  packages  install the Debian packages that demo, evaluate, test and bench need, and do no more
+  packages  install the Debian packages that all of these need, and do no more
 
 Packages that are missing are installed with apt-get; nothing is downloaded when all are there.
 TEXT
@@ -30,6 +34,8 @@ bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev li
     libbenchmark-dev libcli11-dev nlohmann-json3-dev"
 # What its tests need besides.
 test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels valgrind"
+# What reads the sources without compiling them. Another clang-format would break other lines.
+slow_check_packages="$test_packages clang-format-14 clang-tidy"
 
 say() {
     printf '\n== %s\n' "$*"
@@ -64,7 +70,7 @@ install_packages() {
         stop "This script installs packages on Debian 12, Ubuntu 24.04 and newer. On this system, install by hand
   a C++20 compiler (g++ 12 or clang++ 14, or newer), CMake 3.25, Ninja, pkg-config,
   Eigen 3.4, xtensor 0.24, GLM 0.9.9; for the examples assimp 5, Bullet 3, OpenEXR 3, libpng, libwebp, CLI11 2,
-  nlohmann_json 3; for the tests doctest 2.4, Google Benchmark 1.7 and valgrind
+  nlohmann_json 3; for the tests doctest 2.4, Google Benchmark 1.7, valgrind, clang-format 14 and clang-tidy
 and then run: cmake --workflow --preset demo (or test, or bench)"
     fi
     missing=$(missing_packages "$@")
@@ -94,6 +100,24 @@ workflow() {
     else
         cmake --workflow --preset "$1"
     fi
+    count_tests "$@"
+}
+
+# Adds a line to `counts`: how many tests of a preset ran in the build folder that is named after it or given, and how many
+# cases of doctest these hold. None is a failure.
+counts=""
+count_tests() {
+    log=build/${2-$1}/Testing/Temporary/LastTest.log
+    if [ -f "$log" ]; then
+        counts="$counts$(awk -v preset="$1" '
+            /^[0-9]+\/[0-9]+ Testing: / { tests += 1 }
+            /^\[doctest\] test cases: / { split($0, words, ":"); cases += words[2] + 0 }
+            END {
+                printf "%-12s %5d tests passed, %5d cases of doctest in them\n.", preset, tests, cases
+                exit tests == 0
+            }' "$log")"
+        counts=${counts%.}
+    fi
 }
 
 demo() {
@@ -110,8 +134,27 @@ run_tests() {
     workflow test
     workflow asan
     workflow tsan
-    workflow native
-    say "All tests passed"
+    say "Passed; slow ones were left out: sh cmake/quickstart.sh slow_checks"
+    printf '%s' "$counts"
+}
+
+# What clang-tidy reads: all of the library by its umbrella, and programs as users write them.
+tidy_units="tests/house/umbrella_first.cpp examples/first_render.cpp examples/maps_and_noise.cpp
+    examples/your_own_correspondence.cpp examples/your_own_denoiser.cpp examples/blender_maps.cpp"
+
+slow_checks() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $slow_check_packages
+    say "clang-format"
+    find include tests examples benchmarks '(' -name '*.[ch]pp' -o -name '*.inl' ')' -exec \
+        clang-format-14 --dry-run --Werror '{}' +
+    workflow slow_checks test
+    say "clang-tidy"
+    # shellcheck disable=SC2086 # a list of words
+    printf '%s\n' $tidy_units | xargs -P 2 -n 1 clang-tidy --quiet --warnings-as-errors='*' -p build/test \
+        --extra-arg=-Wno-unknown-warning-option
+    say "Passed"
+    printf '%s' "$counts"
 }
 
 evaluate() {
@@ -147,12 +190,13 @@ case ${1-} in
         evaluate "$@"
         ;;
     test) run_tests ;;
+    slow_checks) slow_checks ;;
     bench)
         shift
         bench "$@"
         ;;
     packages) # shellcheck disable=SC2086 # a list of words
-        install_packages $test_packages ;;
+        install_packages $slow_check_packages $evaluate_packages ;;
     *)
         usage >&2
         exit 2

@@ -166,6 +166,7 @@ int main(int argc, char** argv) {
     try {
         options = parse_render_options(argc, argv);
         loop = threaded_loop(options.threads);
+        force_vector_target(options.vectors);
         weights = load_weights(options);
         if (weights->vocabulary && !options.is_check && !options.is_plan) {
             prompt_rows(options.prompt, weights->vocabulary->words());

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -70,9 +71,14 @@ struct decoder_world {
 /// The plans of one frame, of all resolutions: matched anew, or from the matches that an earlier step left.
 void make_blend_plan(benchmark::State& state) {
     constexpr std::uint32_t frames = 12;
-    footprint_map_settings settings;
-    settings.kept_bytes = state.range(0) != 0 ? settings.kept_bytes : 0;
-    decoder_world world(frames, settings);
+    static std::map<bool, std::unique_ptr<decoder_world>> worlds;
+    auto const is_kept = state.range(0) != 0;
+    if (!worlds[is_kept]) {
+        footprint_map_settings settings;
+        settings.kept_bytes = is_kept ? settings.kept_bytes : 0;
+        worlds[is_kept] = std::make_unique<decoder_world>(frames, settings);
+    }
+    auto& world = *worlds[is_kept];
     std::vector<frame_index> const KF{{9}, {1}, {11}, {5}, {7}};
     for (std::uint32_t i = 0; i < frames; ++i) {
         world.plans(KF, {i});

@@ -114,7 +114,7 @@ void whole_run(benchmark::State& state) {
 }
 BENCHMARK(whole_run)
     ->ArgNames({"frames", "size", "steps"})
-    ->Args({24, 128, 20})
+    ->Args({12, 128, 20})
     ->Iterations(1)
     ->Repetitions(1)
     ->UseManualTime()

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <time.h>
+
 namespace genrender::benchmarks {
 
 /// What the least that a kernel must do costs on this machine: a copy of its bytes, a matrix product of its FLOPs.
@@ -18,13 +20,30 @@ struct floor_of {
     double share = 1; ///< of the kernel's work that one run of the floor does
 };
 
-/// Seconds that `body` takes by the clock on the wall.
-template <class Body>
+/// The clock on the wall, for everything that may run on several threads.
+struct wall_clock {
+    static double seconds() {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+};
+
+/// The time that the calling thread has been on a processor: what others do on the machine does not count, nor what other
+/// threads of the program do.
+struct thread_clock {
+    static double seconds() {
+        timespec time{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
+};
+
+/// Seconds that `body` takes by a clock.
+template <class Clock = wall_clock, class Body>
 double seconds_of(Body&& body) {
-    auto const start = std::chrono::steady_clock::now();
+    auto const start = Clock::seconds();
     body();
     benchmark::ClobberMemory();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return Clock::seconds() - start;
 }
 
 /// Times `kernel` and `floor` in turn until Google Benchmark has enough, and reports the kernel's time,
@@ -32,7 +51,7 @@ double seconds_of(Body&& body) {
 /// the kernels until its next turn: 1 is as fast as the floor) and the floor's name as label. A floor that takes longer
 /// than the kernel takes its turn only now and then, so that it has half of the time and not all of it. The benchmark
 /// must be registered with UseManualTime().
-template <class Kernel, class Floor>
+template <class Clock = wall_clock, class Kernel, class Floor>
 void time_against(benchmark::State& state, floor_of const& floor_is, Kernel&& kernel, Floor&& floor) {
     std::vector<double> ratios;
     std::vector<double> kernels; // since the floor's last turn
@@ -47,10 +66,10 @@ void time_against(benchmark::State& state, floor_of const& floor_is, Kernel&& ke
     for (auto _ : state) {
         if (floor_sum <= kernel_sum) {
             end_turn();
-            floor_seconds = seconds_of(floor);
+            floor_seconds = seconds_of<Clock>(floor);
             floor_sum += floor_seconds;
         }
-        kernels.push_back(seconds_of(kernel));
+        kernels.push_back(seconds_of<Clock>(kernel));
         kernel_sum += kernels.back();
         state.SetIterationTime(kernels.back());
     }

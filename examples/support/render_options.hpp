@@ -7,6 +7,7 @@
 
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
+#include <genrender/core/vector_target.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 
@@ -17,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -47,6 +49,7 @@ struct render_options {
     std::optional<std::size_t> keyframes;
     std::size_t size = 64;
     std::size_t threads = 0;
+    std::optional<vector_target> vectors; ///< none: the processor's
     std::uint64_t seed = 0;
     render_method method = render_method::generative_rendering;
     bool is_quiet = false;
@@ -200,6 +203,15 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(CLI::Range(0, 1024).description(""))
         ->capture_default_str()
         ->type_name("N");
+    std::map<std::string, vector_target> targets;
+    for (auto const target : available_vector_targets()) {
+        targets.emplace(name_of(target), target);
+    }
+    app.add_option_function<std::string>(
+           "--vectors", [&](std::string const& name) { options.vectors = targets.at(name); },
+           "vector instructions of the kernels, to have the bits of another machine; the processor's best unless told")
+        ->check(one_of(targets))
+        ->type_name("TARGET");
     app.add_flag("--quiet", options.is_quiet, "no progress");
     app.footer(
         "It writes OUT/frames/0000.png ..., OUT/maps/, OUT/animation.webp, OUT/contact_sheet.png and OUT/report.json.\n"

@@ -96,6 +96,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["steps"] = settings.steps;
     told["sampler"] = samplers[static_cast<std::size_t>(settings.method)];
     told["seed"] = options.seed;
+    told["vectors"] = name_of(report.vector_target());
     told["noise"] = noises[static_cast<std::size_t>(settings.noise.kind)];
     auto const& matched = options.correspondence;
     if (settings.noise.kind == noise_kind::uv) {

@@ -15,7 +15,7 @@ using namespace genrender;
 namespace {
 
 struct some_features {};
-using least = attention_call_archetype<some_features, float>;
+using least_call = attention_call_archetype<some_features, float>;
 using host_call = host_attention_call<float, genrender::testing::identity_projections>;
 
 struct gives_nothing {
@@ -41,13 +41,13 @@ struct knows_one_engine {
 
 TEST_SUITE("attention/attention_processor") {
     TEST_CASE("the library's processors are processors of the least call and of the host's") {
-        CHECK(attention_processor<attention_processor_archetype, least>);
-        CHECK(attention_processor<plain_attention, least>);
-        CHECK(attention_processor<plain_attention const, least>);
-        CHECK(attention_processor<recorder<some_features>, least>);
-        CHECK(attention_processor<recorder<some_features> const, least>);
-        CHECK(attention_processor<injector<some_features, float>, least>);
-        CHECK(attention_processor<injector<some_features, float> const, least>);
+        CHECK(attention_processor<attention_processor_archetype, least_call>);
+        CHECK(attention_processor<plain_attention, least_call>);
+        CHECK(attention_processor<plain_attention const, least_call>);
+        CHECK(attention_processor<recorder<some_features>, least_call>);
+        CHECK(attention_processor<recorder<some_features> const, least_call>);
+        CHECK(attention_processor<injector<some_features, float>, least_call>);
+        CHECK(attention_processor<injector<some_features, float> const, least_call>);
         CHECK(attention_processor<plain_attention, host_call>);
         CHECK(attention_processor<recorder<host_features<float>>, host_call>);
         CHECK(attention_processor<injector<host_features<float>, float>, host_call>);
@@ -56,14 +56,14 @@ TEST_SUITE("attention/attention_processor") {
     TEST_CASE("features of another engine are refused") {
         CHECK_FALSE(attention_processor<recorder<some_features>, host_call>);
         CHECK_FALSE(attention_processor<injector<host_features<double>, double>, host_call>);
-        CHECK_FALSE(attention_processor<knows_one_engine, least>);
+        CHECK_FALSE(attention_processor<knows_one_engine, least_call>);
         CHECK(attention_processor<knows_one_engine, host_call>);
     }
 
     TEST_CASE("what returns nothing or takes no call is no processor") {
-        CHECK_FALSE(attention_processor<gives_nothing, least>);
-        CHECK_FALSE(attention_processor<takes_nothing, least>);
-        CHECK_FALSE(attention_processor<some_features, least>);
+        CHECK_FALSE(attention_processor<gives_nothing, least_call>);
+        CHECK_FALSE(attention_processor<takes_nothing, least_call>);
+        CHECK_FALSE(attention_processor<some_features, least_call>);
         CHECK_FALSE(attention_processor<plain_attention, some_features>);
     }
 

@@ -29,13 +29,6 @@ stack<Real, 4> plain_pix2video(layered_denoiser<Real> const& phi, strided_view<R
                                   });
 }
 
-render_settings<double> few_steps() {
-    render_settings<double> settings;
-    settings.steps = 3;
-    settings.keyframes.count = 2;
-    return settings;
-}
-
 /// A denoiser that forgets its processor.
 struct deaf : analytic_denoiser<double> {
     template <class Processor>

@@ -7,6 +7,7 @@
 
 #include <genrender/correspondence/texel_grid.hpp>
 #include <genrender/guidance/background_mask.hpp>
+#include <genrender/pipeline/render_settings.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 
 #include <algorithm>
@@ -18,6 +19,14 @@
 #include <vector>
 
 namespace genrender::testing {
+
+/// Three steps with two keyframes.
+inline render_settings<double> few_steps() {
+    render_settings<double> settings;
+    settings.steps = 3;
+    settings.keyframes.count = 2;
+    return settings;
+}
 
 /// Frames of three moving rectangles, textures of 10 x 10 texels, three steps.
 template <class Real>

@@ -14,57 +14,59 @@
 using namespace genrender;
 using namespace genrender::testing;
 
-namespace {
-
-constexpr std::size_t tokens = 7;
-constexpr std::size_t channels = 4;
-constexpr attention_place place{{1}, 0};
-std::vector<frame_index> const frames{{2}, {5}};
-
-/// A plan in which token t of frame i is two tokens of two keyframes, shared 1 to 3.
-template <class Real>
-struct shared_plan {
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<std::uint32_t> sources;
-    std::vector<Real> weights;
-
-    explicit shared_plan(std::uint32_t i) {
-        for (std::uint32_t t = 0; t < tokens; ++t) {
-            sources.push_back(static_cast<std::uint32_t>((t + i) % tokens));
-            sources.push_back(static_cast<std::uint32_t>(tokens + (2 * t + i) % tokens));
-            weights.push_back(Real(0.25));
-            weights.push_back(Real(0.75));
-            offsets.push_back(2 * t + 2);
-        }
-    }
-    sparse_rows<Real> rows() const { return {offsets, sources, weights}; }
-};
-
-template <class Real>
-struct recorded_world {
-    matrix_module<Real> module{channels, 2, 3};
-    host_features<Real> f = random_features<Real>({2, tokens, channels}, 4);
-    host_features<Real> F_KF = random_features<Real>({2, tokens, channels}, 5);
-    feature_bank<host_features<Real>> bank{2, 2};
-    std::vector<shared_plan<Real>> plans;
-
-    recorded_world() {
-        keyframe_features<host_features<Real>> kept;
-        kept.F_KF = F_KF;
-        bank.put(place, kept);
-        for (std::uint32_t i = 0; i < 6; ++i) {
-            plans.emplace_back(i);
-        }
-    }
-    token_propagation<host_features<Real>, Real> propagate() const {
-        return {bank, [this](site_index, frame_index i) { return plans[i.value].rows(); }};
-    }
-    host_attention_call<Real, matrix_module<Real>> call(attention_place at) const { return {at, frames, f, module}; }
-};
-
-} // namespace
-
 TEST_SUITE("baselines/token_propagation") {
+    namespace {
+
+    constexpr std::size_t tokens = 7;
+    constexpr std::size_t channels = 4;
+    constexpr attention_place place{{1}, 0};
+    std::vector<frame_index> const frames{{2}, {5}};
+
+    /// A plan in which token t of frame i is two tokens of two keyframes, shared 1 to 3.
+    template <class Real>
+    struct shared_plan {
+        std::vector<std::uint32_t> offsets{0};
+        std::vector<std::uint32_t> sources;
+        std::vector<Real> weights;
+
+        explicit shared_plan(std::uint32_t i) {
+            for (std::uint32_t t = 0; t < tokens; ++t) {
+                sources.push_back(static_cast<std::uint32_t>((t + i) % tokens));
+                sources.push_back(static_cast<std::uint32_t>(tokens + (2 * t + i) % tokens));
+                weights.push_back(Real(0.25));
+                weights.push_back(Real(0.75));
+                offsets.push_back(2 * t + 2);
+            }
+        }
+        sparse_rows<Real> rows() const { return {offsets, sources, weights}; }
+    };
+
+    template <class Real>
+    struct recorded_world {
+        matrix_module<Real> module{channels, 2, 3};
+        host_features<Real> f = random_features<Real>({2, tokens, channels}, 4);
+        host_features<Real> F_KF = random_features<Real>({2, tokens, channels}, 5);
+        feature_bank<host_features<Real>> bank{2, 2};
+        std::vector<shared_plan<Real>> plans;
+
+        recorded_world() {
+            keyframe_features<host_features<Real>> kept;
+            kept.F_KF = F_KF;
+            bank.put(place, kept);
+            for (std::uint32_t i = 0; i < 6; ++i) {
+                plans.emplace_back(i);
+            }
+        }
+        token_propagation<host_features<Real>, Real> propagate() const {
+            return {bank, [this](site_index, frame_index i) { return plans[i.value].rows(); }};
+        }
+        host_attention_call<Real, matrix_module<Real>> call(attention_place at) const {
+            return {at, frames, f, module};
+        }
+    };
+
+    } // namespace
+
     TEST_CASE("it is an attention processor and its feature I/O") {
         CHECK(attention_processor<token_propagation<int, float> const, attention_call_archetype<int, float>>);
         CHECK(feature_io_processor<token_propagation<int, float>, int, float>);

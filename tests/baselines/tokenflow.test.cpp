@@ -95,13 +95,6 @@ stack<Real, 4> plain_tokenflow(small_baseline_run<Real> const& run, strided_view
     return plain_evaluation<Real>(run.phi, z, sigma, rule);
 }
 
-render_settings<double> few_steps() {
-    render_settings<double> settings;
-    settings.steps = 3;
-    settings.keyframes.count = 2;
-    return settings;
-}
-
 /// A processor that counts its runs and is otherwise another one.
 template <class Processor>
 struct counting_processor {

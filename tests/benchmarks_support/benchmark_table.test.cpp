@@ -206,9 +206,9 @@ TEST_SUITE("benchmarks_support/benchmark_table") {
         CHECK(json["machine"]["compiler"] == "a compiler");
         CHECK(json["machine"]["flags"] == "-O3");
         CHECK(json["machine"]["vector_target"] == "v3");
-        CHECK(json["machine"]["vector_targets"] == nlohmann::json{"baseline", "v3"});
-        CHECK(json["machine"]["libraries"] == nlohmann::json{"Eigen 3", "xtensor 0.24"});
-        CHECK(json["machine"]["peers"] == nlohmann::json{"NumPy 2"});
+        CHECK(json["machine"]["vector_targets"] == nlohmann::ordered_json{"baseline", "v3"});
+        CHECK(json["machine"]["libraries"] == nlohmann::ordered_json{"Eigen 3", "xtensor 0.24"});
+        CHECK(json["machine"]["peers"] == nlohmann::ordered_json{"NumPy 2"});
         CHECK(json["machine"]["date"] == "2026-11-27");
         CHECK(json["machine"]["load"] == 0.25);
         CHECK(json["machine"]["caches"][1]["bytes"] == 1048576);

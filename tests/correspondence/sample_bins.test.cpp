@@ -17,7 +17,7 @@ using namespace genrender;
 namespace {
 
 /// 40 x 30 pixels of a plane, 1/40 apart.
-std::vector<grid_sample<2>> plane() {
+std::vector<grid_sample<2>> pixels_of_a_plane() {
     std::vector<grid_sample<2>> samples;
     for (std::uint32_t row = 0; row < 30; ++row) {
         for (std::uint32_t column = 0; column < 40; ++column) {
@@ -32,7 +32,7 @@ std::vector<grid_sample<2>> plane() {
 
 TEST_SUITE("correspondence/sample_bins") {
     TEST_CASE("a block around a pixel holds all pixels nearer than its border") {
-        auto samples = plane();
+        auto samples = pixels_of_a_plane();
         sample_bins<2> const bins(samples, 1, 4, 4, 1);
         CHECK(bins.is_precise());
         CHECK(bins.reach() == 1);
@@ -64,7 +64,7 @@ TEST_SUITE("correspondence/sample_bins") {
         struct numbered : grid_sample<2> {
             std::size_t number = 0;
         };
-        auto const before = plane();
+        auto const before = pixels_of_a_plane();
         std::vector<numbered> samples;
         for (auto const& s : before) {
             samples.push_back({s, samples.size()});
@@ -82,7 +82,7 @@ TEST_SUITE("correspondence/sample_bins") {
     }
 
     TEST_CASE("a block of everything says so") {
-        auto samples = plane();
+        auto samples = pixels_of_a_plane();
         sample_bins<2> const bins(samples, 1, 4, 4, 1);
         auto const bin = bins.bin_at(samples[0].place);
         sample_bins<2>::block const everything(bins, *bin, 1000);
@@ -94,7 +94,7 @@ TEST_SUITE("correspondence/sample_bins") {
     }
 
     TEST_CASE("what lies within half a cell of a pixel is not beyond reach and what lies far off is") {
-        auto samples = plane();
+        auto samples = pixels_of_a_plane();
         sample_bins<2> const bins(samples, 1, 4, 4, 1);
         surface_footprint<2> const footprint{{1.0F / 40, 0}, {0, 1.0F / 40}};
         auto const is_beyond = [&](float u, float v) {
@@ -109,7 +109,7 @@ TEST_SUITE("correspondence/sample_bins") {
     }
 
     TEST_CASE("a pixel without footprint is reached by the footprint of the point") {
-        auto samples = plane();
+        auto samples = pixels_of_a_plane();
         samples.push_back({{2, 2}, {}});
         sample_bins<2> const bins(samples, 1, 4, 4, 1);
         std::array<float, 2> const place{2.1F, 2};

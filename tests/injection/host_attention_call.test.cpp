@@ -15,24 +15,24 @@
 using namespace genrender;
 using namespace genrender::testing;
 
-namespace {
-
-constexpr std::size_t tokens = 9;
-constexpr std::size_t channels = 6;
-std::vector<frame_index> const frames{{4}, {0}, {7}};
-
-template <class Real>
-using call_of = host_attention_call<Real, matrix_module<Real>>;
-
-struct without_heads {
-    void query(strided_view<float, 2>, strided_view<float const, 2>) const {}
-    void key(strided_view<float, 2>, strided_view<float const, 2>) const {}
-    void value(strided_view<float, 2>, strided_view<float const, 2>) const {}
-};
-
-} // namespace
-
 TEST_SUITE("injection/host_attention_call") {
+    namespace {
+
+    constexpr std::size_t tokens = 9;
+    constexpr std::size_t channels = 6;
+    std::vector<frame_index> const frames{{4}, {0}, {7}};
+
+    template <class Real>
+    using call_of = host_attention_call<Real, matrix_module<Real>>;
+
+    struct without_heads {
+        void query(strided_view<float, 2>, strided_view<float const, 2>) const {}
+        void key(strided_view<float, 2>, strided_view<float const, 2>) const {}
+        void value(strided_view<float, 2>, strided_view<float const, 2>) const {}
+    };
+
+    } // namespace
+
     TEST_CASE("it is an attention call for modules with three projections and a number of heads") {
         CHECK(attention_call<call_of<float>>);
         CHECK(attention_call<host_attention_call<double, matrix_module<double>, threaded_loop>>);

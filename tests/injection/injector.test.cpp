@@ -19,64 +19,65 @@
 using namespace genrender;
 using namespace genrender::testing;
 
-namespace {
-
-constexpr std::size_t tokens = 13;
-constexpr std::size_t channels = 8;
-std::vector<frame_index> const KF{{6}, {1}, {4}};
-std::vector<frame_index> const frames{{3}, {4}, {0}, {6}}; // two of them are keyframes
-std::vector<std::size_t> const all_keyframes{0, 1, 2};
-
-template <class Real>
-using call_of = host_attention_call<Real, matrix_module<Real>>;
-
-/// A recorded keyframe pass and a plan for every frame and site.
-template <class Real>
-struct recorded_world {
-    matrix_module<Real> module{channels, 2, 11};
-    host_features<Real> f_KF = random_features<Real>({KF.size(), tokens, channels}, 12);
-    host_features<Real> f = random_features<Real>({frames.size(), tokens, channels}, 13);
-    host_features<Real> F_KF;
-    feature_bank<host_features<Real>> bank{3, 2};
-    std::vector<random_plan<Real>> plans;
-
-    /// Records the place of site 1 and `branch` alone.
-    explicit recorded_world(std::uint32_t branch = 0) {
-        recorder<host_features<Real>> const pass(bank, [](attention_place place) { return place.site.value == 1; });
-        call_of<Real> call({{1}, branch}, KF, f_KF, module);
-        F_KF = pass(call);
-        for (std::uint64_t seed = 0; seed < 24; ++seed) {
-            plans.emplace_back(tokens, KF.size(), 20 + seed);
-        }
-    }
-    random_plan<Real> const& plan(site_index site, frame_index frame) const {
-        return plans[8 * site.value + frame.value];
-    }
-
-    injector<host_features<Real>, Real> inject(injection_settings<Real> settings = {}) const {
-        return {bank, KF, [this](site_index site, frame_index frame) { return plan(site, frame).rows(); }, settings};
-    }
-    call_of<Real> call(attention_place place) const { return {place, frames, f, module}; }
-
-    /// F_out of entry i at site 1 by the equations, joining the keyframes `joined`, with this alpha.
-    token_rows expected(std::size_t i, std::vector<std::size_t> const& joined, double alpha) const {
-        auto const own = joined_rows(f, {i});
-        auto sources = own;
-        auto const others = joined_rows(f_KF, joined);
-        sources.insert(sources.end(), others.begin(), others.end());
-        return dense_mix(dense_self_attention(module, own, sources), joined_rows(F_KF, all_keyframes),
-                         plan({1}, frames[i]).rows(), alpha);
-    }
-};
-
-template <class Real>
-constexpr double tolerance = sizeof(Real) == 4 ? 1e-5 : 1e-13;
-
-constexpr attention_place taken{{1}, 0};
-
-} // namespace
-
 TEST_SUITE("injection/injector") {
+    namespace {
+
+    constexpr std::size_t tokens = 13;
+    constexpr std::size_t channels = 8;
+    std::vector<frame_index> const KF{{6}, {1}, {4}};
+    std::vector<frame_index> const frames{{3}, {4}, {0}, {6}}; // two of them are keyframes
+    std::vector<std::size_t> const all_keyframes{0, 1, 2};
+
+    template <class Real>
+    using call_of = host_attention_call<Real, matrix_module<Real>>;
+
+    /// A recorded keyframe pass and a plan for every frame and site.
+    template <class Real>
+    struct recorded_world {
+        matrix_module<Real> module{channels, 2, 11};
+        host_features<Real> f_KF = random_features<Real>({KF.size(), tokens, channels}, 12);
+        host_features<Real> f = random_features<Real>({frames.size(), tokens, channels}, 13);
+        host_features<Real> F_KF;
+        feature_bank<host_features<Real>> bank{3, 2};
+        std::vector<random_plan<Real>> plans;
+
+        /// Records the place of site 1 and `branch` alone.
+        explicit recorded_world(std::uint32_t branch = 0) {
+            recorder<host_features<Real>> const pass(bank, [](attention_place place) { return place.site.value == 1; });
+            call_of<Real> call({{1}, branch}, KF, f_KF, module);
+            F_KF = pass(call);
+            for (std::uint64_t seed = 0; seed < 24; ++seed) {
+                plans.emplace_back(tokens, KF.size(), 20 + seed);
+            }
+        }
+        random_plan<Real> const& plan(site_index site, frame_index frame) const {
+            return plans[8 * site.value + frame.value];
+        }
+
+        injector<host_features<Real>, Real> inject(injection_settings<Real> settings = {}) const {
+            return {bank, KF, [this](site_index site, frame_index frame) { return plan(site, frame).rows(); },
+                    settings};
+        }
+        call_of<Real> call(attention_place place) const { return {place, frames, f, module}; }
+
+        /// F_out of entry i at site 1 by the equations, joining the keyframes `joined`, with this alpha.
+        token_rows expected(std::size_t i, std::vector<std::size_t> const& joined, double alpha) const {
+            auto const own = joined_rows(f, {i});
+            auto sources = own;
+            auto const others = joined_rows(f_KF, joined);
+            sources.insert(sources.end(), others.begin(), others.end());
+            return dense_mix(dense_self_attention(module, own, sources), joined_rows(F_KF, all_keyframes),
+                             plan({1}, frames[i]).rows(), alpha);
+        }
+    };
+
+    template <class Real>
+    constexpr double tolerance = sizeof(Real) == 4 ? 1e-5 : 1e-13;
+
+    constexpr attention_place taken{{1}, 0};
+
+    } // namespace
+
     TEST_CASE("an injector is an attention processor") {
         CHECK(attention_processor<injector<int, float> const, attention_call_archetype<int, float>>);
         CHECK_FALSE(attention_processor<injector<int, float> const, attention_call_archetype<char const*, float>>);

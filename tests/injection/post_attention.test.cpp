@@ -14,33 +14,33 @@
 using namespace genrender;
 using namespace genrender::testing;
 
-namespace {
+TEST_SUITE("injection/post_attention") {
+    namespace {
 
-constexpr std::size_t tokens = 23;
-constexpr std::size_t keyframes = 3;
-constexpr std::size_t channels = 5;
+    constexpr std::size_t tokens = 23;
+    constexpr std::size_t keyframes = 3;
+    constexpr std::size_t channels = 5;
 
-/// x with the affine map W x + b applied to every token, as an output projection does.
-host_features<double> projected(host_features<double> const& x) {
-    auto const W = random_stack<double, 2>({channels, channels}, 71);
-    auto const b = random_stack<double, 1>({channels}, 72);
-    auto const y = host_features<double>::allocate(x.extents());
-    for (std::size_t i = 0; i < x.extents()[0]; ++i) {
-        for (std::size_t t = 0; t < x.extents()[1]; ++t) {
-            for (std::size_t r = 0; r < channels; ++r) {
-                y.view()(i, t, r) = b(r);
-                for (std::size_t c = 0; c < channels; ++c) {
-                    y.view()(i, t, r) += W(r, c) * x.view()(i, t, c);
+    /// x with the affine map W x + b applied to every token, as an output projection does.
+    host_features<double> projected(host_features<double> const& x) {
+        auto const W = random_stack<double, 2>({channels, channels}, 71);
+        auto const b = random_stack<double, 1>({channels}, 72);
+        auto const y = host_features<double>::allocate(x.extents());
+        for (std::size_t i = 0; i < x.extents()[0]; ++i) {
+            for (std::size_t t = 0; t < x.extents()[1]; ++t) {
+                for (std::size_t r = 0; r < channels; ++r) {
+                    y.view()(i, t, r) = b(r);
+                    for (std::size_t c = 0; c < channels; ++c) {
+                        y.view()(i, t, r) += W(r, c) * x.view()(i, t, c);
+                    }
                 }
             }
         }
+        return y;
     }
-    return y;
-}
 
-} // namespace
+    } // namespace
 
-TEST_SUITE("injection/post_attention") {
     TEST_CASE_TEMPLATE("[GR eq. 6] a covered and an uncovered token by hand", Real, float, double) {
         std::vector<std::uint32_t> const offsets{0, 2, 2};
         std::vector<std::uint32_t> const sources{1, 2}; // token 1 of keyframe 0 and token 0 of keyframe 1

@@ -18,42 +18,42 @@ using namespace genrender;
 using genrender::testing::matrix_module;
 using genrender::testing::random_stack;
 
-namespace {
-
-using features = host_features<double>;
-using module_type = matrix_module<double>;
-using call_type = host_attention_call<double, module_type>;
-
-constexpr std::size_t keyframes = 3;
-constexpr std::size_t tokens = 5;
-constexpr std::size_t channels = 4;
-std::vector<frame_index> const drawn{{7}, {2}, {4}};
-
-bool always(attention_place) { return true; }
-bool never(attention_place) { return false; }
-
-bool equal_bits(features const& a, features const& b) {
-    return a.extents() == b.extents() &&
-           std::equal(a.view().data(), a.view().data() + a.view().size(), b.view().data());
-}
-
-/// Features that are contiguous and the handle's own.
-features input(std::uint64_t seed) {
-    auto const f = features::allocate({keyframes, tokens, channels});
-    auto const values = random_stack<double, 3>({keyframes, tokens, channels}, seed);
-    copy(f.view(), values.view());
-    return f;
-}
-
-features extended(call_type const& call) {
-    auto const K = call.key(call.f());
-    auto const V = call.value(call.f());
-    return call.attend(call.query(call.f()), extended_attention_sources(K, V, keyframes));
-}
-
-} // namespace
-
 TEST_SUITE("keyframes/recorder") {
+    namespace {
+
+    using features = host_features<double>;
+    using module_type = matrix_module<double>;
+    using call_type = host_attention_call<double, module_type>;
+
+    constexpr std::size_t keyframes = 3;
+    constexpr std::size_t tokens = 5;
+    constexpr std::size_t channels = 4;
+    std::vector<frame_index> const drawn{{7}, {2}, {4}};
+
+    bool always(attention_place) { return true; }
+    bool never(attention_place) { return false; }
+
+    bool equal_bits(features const& a, features const& b) {
+        return a.extents() == b.extents() &&
+               std::equal(a.view().data(), a.view().data() + a.view().size(), b.view().data());
+    }
+
+    /// Features that are contiguous and the handle's own.
+    features input(std::uint64_t seed) {
+        auto const f = features::allocate({keyframes, tokens, channels});
+        auto const values = random_stack<double, 3>({keyframes, tokens, channels}, seed);
+        copy(f.view(), values.view());
+        return f;
+    }
+
+    features extended(call_type const& call) {
+        auto const K = call.key(call.f());
+        auto const V = call.value(call.f());
+        return call.attend(call.query(call.f()), extended_attention_sources(K, V, keyframes));
+    }
+
+    } // namespace
+
     TEST_CASE("[GR alg. 1] a place that takes part attends over all keyframes and is kept") {
         module_type const module(channels, 2, 1);
         feature_bank<features> bank(2, 1);

@@ -22,4 +22,11 @@ TEST_SUITE("pipeline/render_report") {
         CHECK(report.denoiser_seconds() == doctest::Approx(3));
         CHECK(report.library_seconds() == doctest::Approx(0.75));
     }
+
+    TEST_CASE("the vector target of a run is told") {
+        render_report report;
+        CHECK(report.vector_target() == vector_target::baseline);
+        report.set_vector_target(vector_target::v4);
+        CHECK(report.vector_target() == vector_target::v4);
+    }
 }

@@ -20,6 +20,8 @@
 
 namespace genrender {
 
+inline namespace GENRENDER_UNIT {
+
 /// Rescales z [channels, height, width] in place, all of its pixels, so that statistics `from` become statistics `to`:
 /// z_c = (z_c - mean_from) / deviation_from * deviation_to + mean_to. Throws shape_error if channels differ.
 template <class Real>
@@ -41,6 +43,8 @@ void adain(strided_view<Real, 3> z, channel_statistics<std::type_identity_t<Real
         }
     }
 }
+
+} // namespace GENRENDER_UNIT
 
 /// What latent normalisation does to a frame with hardly any background.
 enum class without_background : std::uint8_t {
@@ -65,6 +69,8 @@ struct adain_settings {
     without_background fallback = without_background::skip;
     bool on_noisy_latents = false; ///< normalise z_{t-1} after the sampler's step instead of the clean estimates
 };
+
+inline namespace GENRENDER_UNIT {
 
 /// Normalises a sequence z [frames, channels, height, width] in place: each frame's statistics over its own
 /// `background` [frames, height, width], means and deviations or means alone, become those of frame 0 over its own.
@@ -110,6 +116,8 @@ std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view
     }
     return skipped;
 }
+
+} // namespace GENRENDER_UNIT
 
 } // namespace genrender
 

@@ -48,6 +48,8 @@ T const* neighbouring_values(strided_view<T const, 2> const& view, std::vector<T
 
 namespace genrender {
 
+inline namespace GENRENDER_UNIT {
+
 /// Statistics of z [channels, height, width] over the pixels whose `mask` [height, width] is not 0: mean and
 /// sqrt(unbiased variance + epsilon). With fewer than 2 pixels there is no variance: `pixels` says so and means and
 /// deviations are 0 and 1. Throws shape_error if the mask does not fit.
@@ -93,6 +95,8 @@ channel_statistics<Real> masked_statistics(strided_view<Real const, 3> z, stride
     }
     return result;
 }
+
+} // namespace GENRENDER_UNIT
 
 } // namespace genrender
 

@@ -102,6 +102,7 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
     auto const total = frames_to_denoise(settings, N, method);
 
     auto const start = std::chrono::steady_clock::now();
+    report.set_vector_target(chosen_vector_target());
 
     // z_UV ~ N(0, I); z = z_T = sigma_T pi_UV(z_UV)
     auto z = latents<Real>::from_shape({N, phi.latent_channels(), grid.height, grid.width});

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/index.hpp>
+#include <genrender/core/vector_target.hpp>
 
 #include <cstddef>
 #include <map>
@@ -36,6 +37,8 @@ public:
     /// rest of the library: compiling geometry, noise, keyframes, blend plans, normalisation.
     double denoiser_seconds() const { return denoiser_seconds_; }
     double library_seconds() const { return library_seconds_; }
+    /// The vector target of the library's kernels when the run began.
+    genrender::vector_target vector_target() const { return vector_target_; }
 
     void add_coverage(grid_extents grid, std::size_t on_objects, std::size_t covered) {
         std::lock_guard const lock(mutex_);
@@ -47,6 +50,7 @@ public:
         std::lock_guard const lock(mutex_);
         skipped_.insert(frames.begin(), frames.end());
     }
+    void set_vector_target(genrender::vector_target target) { vector_target_ = target; }
     void add_seconds(double denoiser, double library) {
         std::lock_guard const lock(mutex_);
         denoiser_seconds_ += denoiser;
@@ -57,6 +61,7 @@ private:
     std::mutex mutex_;
     std::map<grid_extents, coverage_count> coverage_;
     std::set<std::size_t> skipped_;
+    genrender::vector_target vector_target_ = genrender::vector_target::baseline;
     double denoiser_seconds_ = 0;
     double library_seconds_ = 0;
 };

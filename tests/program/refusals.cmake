@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+# What the program generative_rendering refuses, with which exit code and which text on its error stream, in one run.
+# Run: cmake -D PROGRAM=<generative_rendering> -D MAPS_PROGRAM=<blender_maps> -D WEIGHTS=<folder> -D FOLDER=<scratch folder>
+#     -P refusals.cmake
+cmake_minimum_required(VERSION 3.25)
+file(REMOVE_RECURSE ${FOLDER})
+
+set(refusals 0)
+set(failures 0)
+function(fails text)
+    message("${text}")
+    math(EXPR count "${failures} + 1")
+    set(failures ${count} PARENT_SCOPE)
+endfunction()
+
+# Runs the program with the arguments after `text`.
+function(refuses what code text)
+    execute_process(COMMAND ${PROGRAM} ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
+    string(FIND "${error}" "${text}" position)
+    if(NOT result EQUAL code OR position EQUAL -1)
+        fails("${what}: exit code ${result}, expected ${code}; error stream, expected '${text}' in it:\n${error}")
+    endif()
+    math(EXPR count "${refusals} + 1")
+    set(refusals ${count} PARENT_SCOPE)
+    set(failures ${failures} PARENT_SCOPE)
+endfunction()
+
+# Files that no run can use.
+set(broken ${FOLDER}/broken)
+file(WRITE ${broken}/text.obj "This is a letter and not a model.\n")
+file(COPY ${WEIGHTS} DESTINATION ${broken})
+file(WRITE ${broken}/weights/unet/diffusion_pytorch_model.safetensors "This is a letter and no weights at all.\n")
+file(WRITE ${broken}/maps/frame_0001.exr "This is a letter and not an image.\n")
+file(WRITE ${broken}/pictures/frame_0001.png "8 bits are not enough.\n")
+file(WRITE ${broken}/file "A file where a folder should be.\n")
+
+# A sequence as Blender writes it.
+set(sequence ${FOLDER}/sequence)
+execute_process(COMMAND ${MAPS_PROGRAM} walking_figure ${sequence} 3 256 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+
+# 1: the arguments are fine and the work cannot be done; 2: the arguments are wrong.
+set(scene --scene camera_rotation)
+set(out --out ${FOLDER}/refused)
+refuses("a run without a prompt" 2 "--prompt" ${scene} ${out})
+refuses("a run without an input" 2 "--scene" --prompt dots ${out})
+refuses("two inputs" 2 "--scene" ${scene} --model a.obj --prompt dots ${out})
+refuses("an unknown scene" 2 "--scene: attic" --scene attic --prompt dots ${out})
+refuses("an unknown word" 2 "word is fur, expected one of plain stripes" ${scene} --prompt "fur" ${out})
+refuses("an unknown option" 2 "--colour" ${scene} --prompt dots ${out} --colour)
+refuses("zero frames" 2 "--frames" ${scene} --prompt dots ${out} --frames 0)
+refuses("more keyframes than frames" 2 "count is 9, expected 1 to the animation's 3 frames" ${scene} --prompt dots ${out}
+    --frames 3 --keyframes 9)
+refuses("a size that the network cannot halve" 2 "height of the latents is 30" ${scene} --prompt dots ${out} --size 60)
+refuses("an alpha above 1" 2 "--alpha" ${scene} --prompt dots ${out} --alpha 1.5)
+refuses("an alpha that is no number" 2 "--alpha" ${scene} --prompt dots ${out} --alpha nan)
+refuses("vectors that no processor has" 2 "--vectors" ${scene} --prompt dots ${out} --vectors v9)
+refuses("a negative seed" 2 "--seed" ${scene} --prompt dots ${out} --seed -1)
+refuses("maps that no machine can hold" 2 "half of the machine's memory" ${scene} --prompt dots ${out} --size 1048576)
+refuses("weights without a name" 2 "--weights" ${scene} --prompt dots ${out} --weights "")
+refuses("a sampler that is none" 2 "--sampler" ${scene} --prompt dots ${out} --sampler dice)
+refuses("settings of the method without the method" 2 "per_frame has no keyframes" ${scene} --prompt dots ${out}
+    --method per_frame --no-post)
+refuses("a texture resolution without texels" 2 "--texture-resolution: is of --correspondence texels" ${scene} --prompt dots
+    ${out} --texture-resolution 64)
+refuses("a noise resolution without texels" 2 "--noise-resolution: is of --noise-reading nearest" ${scene} --prompt dots ${out}
+    --noise-resolution 64)
+refuses("texels of rest positions" 2 "--canonical: position has no texels" ${scene} --prompt dots ${out}
+    --canonical position --correspondence texels)
+refuses("quality of texels" 2 "--average: quality is not known" ${scene} --prompt dots ${out} --average quality
+    --correspondence texels)
+refuses("an environment read by the nearest texel" 2 "--background: environment takes" ${scene} --prompt dots ${out}
+    --background environment --noise-reading nearest)
+refuses("a plan of a baseline" 2 "--plan: is of generative_rendering" ${scene} ${out} --plan --method tokenflow)
+refuses("a missing model" 1 "missing.obj" --model missing.obj --prompt dots ${out})
+refuses("a foreign model" 1 "text.obj" --model ${broken}/text.obj --prompt dots ${out})
+refuses("foreign maps" 1 "frame_0001.exr" --maps ${broken}/maps --prompt dots ${out})
+refuses("8-bit maps" 1 "256" --maps ${broken}/pictures --prompt dots ${out})
+refuses("a missing folder of maps" 1 "nowhere" --maps ${broken}/nowhere --prompt dots ${out})
+refuses("a size that does not divide the maps" 2 "--size: height is 48, expected a divisor of the maps' [256, 256]"
+    --maps ${sequence} --prompt dots ${out} --size 48)
+refuses("an environment of maps" 2 "--background: environment is of EXR maps" --maps ${sequence} --prompt dots ${out}
+    --background environment)
+refuses("a comparison with nothing" 1 "report.json: is no report of a run" ${scene} --prompt dots ${out}
+    --beside ${broken})
+refuses("foreign weights" 1 "diffusion_pytorch_model.safetensors" ${scene} --prompt dots ${out} --frames 2
+    --weights ${broken}/weights)
+refuses("a folder without weights" 1 "unet" ${scene} --prompt dots ${out} --frames 2 --weights ${broken}/maps)
+refuses("an output folder that cannot be written" 1 "${broken}/file" ${scene} --prompt dots --out ${broken}/file)
+
+# What was written before a failure stays.
+file(MAKE_DIRECTORY ${broken}/run/report.json)
+refuses("to put a report where a folder is" 1 "report.json" ${scene} --out ${broken}/run
+    --prompt camo --frames 3 --size 64 --steps 2 --quiet)
+if(NOT EXISTS ${broken}/run/frames/0002.png)
+    fails("${broken}/run/frames/0002.png: was written before the failure and is not there")
+endif()
+
+if(failures GREATER 0 OR refusals EQUAL 0)
+    message(FATAL_ERROR "${failures} of ${refusals} refusals are not as they should be")
+endif()
+message("${refusals} refusals")
