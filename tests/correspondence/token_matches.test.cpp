@@ -109,9 +109,9 @@ TEST_SUITE("correspondence/token_matches") {
                 }
                 CHECK(keeps_all);
             }
-            // All in whole chunks but for the links between pairs and the handles here.
+            // All in whole chunks but for the links between pairs and the handles here, whose vectors grow by halves.
             auto const planned = kept_matches::expected_bytes(pairs, tokens, ~std::size_t{0});
-            CHECK(taken <= planned + pairs * 150);
+            CHECK(taken <= planned + pairs * 200);
         }
     }
 

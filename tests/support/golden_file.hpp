@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
@@ -13,10 +14,10 @@ namespace genrender::testing {
 /// The content of tests/data/`name`. Throws std::runtime_error if it cannot be read, nlohmann's exceptions if it is no
 /// JSON.
 inline nlohmann::json golden_file(std::string const& name) {
-    auto const path = std::string(GENRENDER_TEST_DATA) + "/" + name;
+    std::filesystem::path const path = std::filesystem::path(GENRENDER_TEST_DATA) / name;
     std::ifstream file(path);
     if (!file) {
-        throw std::runtime_error(path + ": cannot be read");
+        throw std::runtime_error(path.string() + ": cannot be read");
     }
     return nlohmann::json::parse(file);
 }
