@@ -21,8 +21,8 @@ void check_tiles_of_blocks() {
     blocks.back().counts = {halves.data(), {13}};
     for (auto const in_place : {false, true}) {
         CAPTURE(in_place);
-        scratch_memory<Real> memory(key_tiles<Real>::scratch(head_size));
-        key_tiles<Real> tiles(blocks, 1, head_size, memory, in_place);
+        stack<Real, 1> memory({key_tiles<Real>::scratch(head_size)});
+        key_tiles<Real> tiles(blocks, 1, head_size, memory.data(), in_place);
         std::size_t key = 0;
         while (tiles.next()) {
             auto const& tile = tiles.tile();
@@ -55,8 +55,8 @@ inline void check_copies_of_keys() {
     V(2, 1) = static_cast<bfloat16>(3);
     std::vector<key_value_view<float>> const blocks{
         {strided_view<float const, 2>(K.data(), {5, 4}, {1, 5}), std::as_const(V).view()}};
-    scratch_memory<float> memory(key_tiles<float>::scratch(4));
-    key_tiles<float> tiles(blocks, 0, 4, memory, true);
+    stack<float, 1> memory({key_tiles<float>::scratch(4)});
+    key_tiles<float> tiles(blocks, 0, 4, memory.data(), true);
     REQUIRE(tiles.next());
     CHECK(tiles.tile().keys == 5);
     CHECK(tiles.tile().K[2][3] == K(3, 2));

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The kernels on an engine's own arrays: whoever needs no more than them gets neither xtensor nor GLM nor nanoflann.
+// The kernels on an engine's own arrays: whoever needs no more than them gets neither xtensor nor Eigen nor GLM nor
+// nanoflann.
 #include <genrender/attention/scaled_dot_product.hpp>
 #include <genrender/blending/mix_rows.hpp>
+#include <genrender/core/linear_combination.hpp>
+#include <genrender/normalization/adain.hpp>
 
-#if defined(XTENSOR_VERSION_MAJOR) || defined(GLM_VERSION_MAJOR) || defined(NANOFLANN_VERSION)
+#if defined(XTENSOR_VERSION_MAJOR) || defined(EIGEN_WORLD_VERSION) || defined(GLM_VERSION_MAJOR) ||                    \
+    defined(NANOFLANN_VERSION)
 #error "the kernels include what only owners of stacks and scenes may"
 #endif
 

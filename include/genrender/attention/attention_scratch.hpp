@@ -11,33 +11,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <type_traits>
 
 namespace genrender::detail {
-
-/// Memory for `count` numbers that begins at a cache line and holds anything.
-template <class Real>
-class scratch_memory {
-public:
-    explicit scratch_memory(std::size_t count)
-        : lines_(std::make_unique_for_overwrite<line[]>((count * sizeof(Real) + sizeof(line) - 1) / sizeof(line))),
-          next_(reinterpret_cast<Real*>(lines_.get())) {}
-
-    /// The next `count` of the numbers.
-    Real* take(std::size_t count) {
-        next_ += count;
-        return next_ - count;
-    }
-
-private:
-    struct alignas(64) line {
-        std::byte bytes[64];
-    };
-    std::unique_ptr<line[]> lines_;
-    Real* next_;
-};
 
 /// Columns of one head of a view [tokens, channels].
 template <class T>

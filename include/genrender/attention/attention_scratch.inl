@@ -32,14 +32,14 @@ void read_rows(Real* to, strided_view<Stored const, 2> const& from, std::size_t 
 template <class Real>
 class key_tiles {
 public:
+    /// Numbers of room for copies of a tile.
     static std::size_t scratch(std::size_t head_size) { return 2 * tile_keys * head_size; }
 
     /// With `in_place`, rows of neighbouring numbers of type Real are read where they lie; else all are copied, which
     /// is worth it when they are read several times: copies lie close together.
-    key_tiles(std::span<key_value_view<Real> const> blocks, std::size_t head, std::size_t head_size,
-              scratch_memory<Real>& memory, bool in_place)
-        : blocks_(blocks), head_(head), in_place_(in_place), K_(memory.take(tile_keys * head_size)),
-          V_(memory.take(tile_keys * head_size)) {
+    key_tiles(std::span<key_value_view<Real> const> blocks, std::size_t head, std::size_t head_size, Real* copies,
+              bool in_place)
+        : blocks_(blocks), head_(head), in_place_(in_place), K_(copies), V_(copies + tile_keys * head_size) {
         tile_.head_size = head_size;
         tile_.is_far = in_place;
         skip_empty();

@@ -35,12 +35,13 @@ void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::sp
     auto const queries = Q.extent(0);
     auto const head_size = Q.extent(1);
     auto const tiles = (queries + full::queries - 1) / full::queries;
-    scratch_memory<Real> memory(key_tiles<Real>::scratch(head_size) + (tile_keys + 1) * full::queries +
-                                tiles * full::size(head_size));
+    auto const of_keys = key_tiles<Real>::scratch(head_size);
+    auto const of_weights = (tile_keys + 1) * full::queries;
+    auto memory = stack<Real, 1>::uninitialized({of_keys + of_weights + tiles * full::size(head_size)});
     // Few queries read each key once, or twice in narrow tiles.
-    key_tiles<Real> keys(blocks, head, head_size, memory, tiles == 1);
-    auto* const weights = memory.take((tile_keys + 1) * full::queries);
-    auto* const tile_memory = memory.take(tiles * full::size(head_size));
+    key_tiles<Real> keys(blocks, head, head_size, memory.data(), tiles == 1);
+    auto* const weights = memory.data() + of_keys;
+    auto* const tile_memory = weights + of_weights;
 
     // exp(x) = 2^(x log2 e).
     auto const scale = std::numbers::log2e_v<Real> / std::sqrt(static_cast<Real>(head_size));
