@@ -120,7 +120,11 @@ foreach(peer IN LISTS peers)
 endforeach()
 
 say("the table, also in ${OUT}/benchmarks.md and benchmarks.json")
-execute_process(COMMAND ${TABLE} ${results} --targets ${CMAKE_CURRENT_LIST_DIR}/targets.json --out ${OUT} --filter=${filter}
+set(filtered "")
+if(NOT filter STREQUAL "")
+    set(filtered --filter=${filter})
+endif()
+execute_process(COMMAND ${TABLE} ${results} --targets ${CMAKE_CURRENT_LIST_DIR}/targets.json --out ${OUT} ${filtered}
     RESULT_VARIABLE table_code)
 if(NOT compare STREQUAL "")
     say("beside ${compare}")
