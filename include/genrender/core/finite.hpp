@@ -4,8 +4,6 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/core/finite.hpp>
-
 #include <array>
 #include <bit>
 #include <concepts>
