@@ -29,7 +29,7 @@ using namespace genrender::examples;
 
 namespace {
 
-using network = reference_network<float, threaded_loop>;
+using network = reference_network<float>;
 
 /// The user's denoiser; here the reference network with the weights of a folder, or with random ones.
 reference_weights<float> load_weights(render_options const& options) {

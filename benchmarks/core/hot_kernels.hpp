@@ -227,8 +227,7 @@ inline kernel_run make_reference_network() {
     auto const in = std::make_shared<inputs>();
     std::fill_n(in->z.view().data(), in->z.view().size(), 0.25F);
     return run_on(in, [](inputs& of) {
-        reference::forward_pass<float, plain_attention const, sequential_loop> pass{of.frames, 0, of.prompt.view(),
-                                                                                    &of.plain, &of.loop};
+        reference::forward_pass<float> pass{of.frames, 0, of.prompt.view(), of.plain, of.loop};
         of.network(pass, of.z, 417.0F);
     });
 }

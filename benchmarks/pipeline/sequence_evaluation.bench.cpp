@@ -53,7 +53,7 @@ struct wave {
     }
 };
 
-using network = reference_network<float, threaded_loop>;
+using network = reference_network<float>;
 
 /// One evaluation of the tiny network, with random weights, on so many threads.
 struct world {
@@ -82,9 +82,9 @@ struct world {
     }
     world(world const&) = delete;
 
-    using run_type = sequence_run<network, surface_correspondence<2>, threaded_loop>;
-    using evaluation_type = sequence_evaluation<network, surface_correspondence<2>, threaded_loop>;
-    run_type run() { return {&phi, &maps, &settings, &loop, &meter, &report}; }
+    using run_type = sequence_run<network, surface_correspondence<2>>;
+    using evaluation_type = sequence_evaluation<network, surface_correspondence<2>>;
+    run_type run() { return {&phi, &maps, &settings, loop, &meter, &report}; }
 };
 
 /// Every frame with the features of four keyframes.

@@ -51,7 +51,7 @@ public:
     threaded_loop const& loop() const { return loop_; }
 
 private:
-    reference_network<float, threaded_loop> network(std::size_t size) {
+    reference_network<float> network(std::size_t size) {
         auto const nearness = cell_means(sequence_inverse_depth(guidance_.depth), {size, size});
         return {weights_, weights_.conditioning(to_view(nearness), "stripes"), loop_};
     }
@@ -59,7 +59,7 @@ private:
     threaded_loop loop_;
     rendered_guidance guidance_;
     reference_weights<float> weights_ = reference_weights<float>::from_folder(GENRENDER_REFERENCE_DENOISER "/weights");
-    reference_network<float, threaded_loop> phi_;
+    reference_network<float> phi_;
 };
 
 /// Balls on a floor seen from all around, maps eight times as large as the latents, and a denoiser of Stable

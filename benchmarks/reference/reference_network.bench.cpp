@@ -82,7 +82,7 @@ void run(benchmark::State& state, networks const& network, std::size_t prompt_to
     }
     plain_attention const plain;
     threaded_loop const loop(static_cast<std::size_t>(state.range(2)));
-    forward_pass<float, plain_attention const, threaded_loop> pass{frames, 0, prompt.view(), &plain, &loop};
+    forward_pass<float> pass{frames, 0, prompt.view(), plain, loop};
     for (auto _ : state) {
         // Once a run is enough, but the peer has no such memory.
         std::vector<feature_maps<float>> embedded(count);

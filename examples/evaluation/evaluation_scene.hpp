@@ -80,9 +80,8 @@ struct evaluation_scene {
 };
 
 /// The built-in scene `name` in `frames` frames of `image` pixels. Throws as make_scene and rasterize do.
-template <parallel_loop Loop>
-evaluation_scene make_evaluation_scene(std::string const& name, std::size_t frames, grid_extents image,
-                                       Loop const& loop) {
+inline evaluation_scene make_evaluation_scene(std::string const& name, std::size_t frames, grid_extents image,
+                                              any_loop const& loop) {
     auto animation = compared_animation(name, frames);
     grid_extents const fine{4 * image.height, 4 * image.width};
     auto guidance = rasterize(animation, fine, loop);
@@ -125,9 +124,8 @@ inline float middle_depth(evaluation_scene const& scene) {
 
 /// A style on all objects of a scene, in a palette that training never showed: images [frames, 3, height, width]. The
 /// same seed paints the same surfaces in the same way, so that only light and view change from frame to frame.
-template <parallel_loop Loop>
-tensor<float, 4> painted_frames(evaluation_scene const& scene, surface_style style, std::uint64_t seed,
-                                Loop const& loop) {
+inline tensor<float, 4> painted_frames(evaluation_scene const& scene, surface_style style, std::uint64_t seed,
+                                       any_loop const& loop) {
     auto const first = scene.animation.frame({0});
     random_draw draw(seed, 0);
     scene_paint paint;

@@ -92,8 +92,7 @@ inline void add_notes_on(std::vector<std::string>& notes, uv_report const& repor
 
 /// The guidance that the options ask for. Throws file_error for files that cannot be used, value_error for options that
 /// do not fit what is read.
-template <parallel_loop Loop>
-guidance_source load_guidance(render_options const& options, Loop const& loop) {
+inline guidance_source load_guidance(render_options const& options, any_loop const& loop) {
     guidance_source source;
     auto const frames = options.frames.value_or(24);
     source.image = {options.size, options.size};

@@ -111,10 +111,10 @@ nlohmann::ordered_json preflight_json(preflight_report const& report, Advice con
 /// Looks at maps before a run and writes preflight.txt, preflight.json and preflight.png into `folder`. `advice` is
 /// what stands for a recommendation in text and JSON: its sentence, or the program's. Throws file_error if a file
 /// cannot be written.
-template <canonical_maps Maps, class Real, parallel_loop Loop, class Advice>
+template <canonical_maps Maps, class Real, class Advice>
 preflight_report write_preflight(std::filesystem::path const& folder, Maps const& maps,
                                  std::vector<grid_extents> const& grids, render_settings<Real> const& settings,
-                                 Loop const& loop, Advice const& advice) {
+                                 any_loop const& loop, Advice const& advice) {
     auto report = preflight(maps, grids, settings, loop);
     write_text(folder / "preflight.txt", text_of(report, advice));
     write_text(folder / "preflight.json", preflight_json(report, advice).dump(2) + "\n");
@@ -123,10 +123,10 @@ preflight_report write_preflight(std::filesystem::path const& folder, Maps const
 }
 
 /// The same with the sentences alone.
-template <canonical_maps Maps, class Real, parallel_loop Loop>
+template <canonical_maps Maps, class Real>
 preflight_report write_preflight(std::filesystem::path const& folder, Maps const& maps,
                                  std::vector<grid_extents> const& grids, render_settings<Real> const& settings,
-                                 Loop const& loop) {
+                                 any_loop const& loop) {
     return write_preflight(folder, maps, grids, settings, loop, sentence_of);
 }
 

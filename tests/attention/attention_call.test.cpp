@@ -94,7 +94,7 @@ TEST_SUITE("attention/attention_call") {
 
     TEST_CASE("the call over host memory is a call for projections of its own scalar") {
         CHECK(attention_call<host_attention_call<float, matrix_module<float>>>);
-        CHECK(attention_call<host_attention_call<double, matrix_module<double>, threaded_loop>>);
+        CHECK(attention_call<host_attention_call<double, matrix_module<double>>>);
         CHECK(attention_projections<matrix_module<float>, float>);
         CHECK_FALSE(attention_projections<matrix_module<float>, double>);
         CHECK_FALSE(attention_projections<without_projected_values, float>);
@@ -199,7 +199,7 @@ TEST_SUITE("attention/attention_call") {
         sequential_loop const one;
         threaded_loop const two(2);
         host_attention_call<float, matrix_module<float>> const a({}, frames, f, module, one);
-        host_attention_call<float, matrix_module<float>, threaded_loop> const b({}, frames, f, module, two);
+        host_attention_call<float, matrix_module<float>> const b({}, frames, f, module, two);
         auto const own = [&](auto const& call) {
             auto const K = call.key(f);
             auto const V = call.value(f);
@@ -217,7 +217,7 @@ TEST_SUITE("attention/attention_call") {
         }
         CHECK(same);
         // Without a loop the call brings its own.
-        host_attention_call<float, matrix_module<float>, threaded_loop> const c({}, frames, f, module);
+        host_attention_call<float, matrix_module<float>> const c({}, frames, f, module);
         CHECK(own(c).view()(4, 8, 7) == F_a.view()(4, 8, 7));
     }
 }

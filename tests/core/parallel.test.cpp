@@ -62,12 +62,32 @@ TEST_SUITE("core/parallel") {
         CHECK(parallel_loop<sequential_loop>);
         CHECK(parallel_loop<threaded_loop>);
         CHECK(parallel_loop<backward_loop>);
+        CHECK(parallel_loop<any_loop>);
         CHECK_FALSE(parallel_loop<not_const_loop>);
         CHECK_FALSE(parallel_loop<loop_without_count>);
         CHECK_FALSE(parallel_loop<int>);
         auto const lambda = [](std::size_t count, auto&& body) { sequential_loop{}(count, body); };
         CHECK(parallel_loop<decltype(lambda)>);
         CHECK(visits(lambda, 3) == std::vector<int>(3, 1));
+    }
+
+    TEST_CASE("any_loop runs the loop that it was made of, on the caller's thread if none") {
+        std::size_t runs = 0;
+        any_loop const counted = [&runs](std::size_t count, auto&& body) {
+            ++runs;
+            sequential_loop{}(count, body);
+        };
+        auto const copy = counted;
+        CHECK(visits(copy, 5) == std::vector<int>(5, 1));
+        CHECK(runs == 1);
+        CHECK(visits(any_loop(), 5) == std::vector<int>(5, 1));
+        CHECK(visits(any_loop(sequential_loop{}), 5) == std::vector<int>(5, 1));
+        CHECK(visits(any_loop(threaded_loop(3)), 50) == std::vector<int>(50, 1));
+        CHECK(values(any_loop(backward_loop{}), 20) == values(any_loop(), 20));
+        std::vector<std::size_t> order;
+        any_loop(backward_loop{})(3, [&](std::size_t i) { order.push_back(i); });
+        CHECK(order == std::vector<std::size_t>{2, 1, 0});
+        CHECK_THROWS_AS(any_loop()(1, [](std::size_t) { throw std::runtime_error("body"); }), std::runtime_error);
     }
 
     TEST_CASE("every index is visited exactly once") {

@@ -35,7 +35,7 @@ TEST_SUITE("injection/host_attention_call") {
 
     TEST_CASE("it is an attention call for modules with three projections and a number of heads") {
         CHECK(attention_call<call_of<float>>);
-        CHECK(attention_call<host_attention_call<double, matrix_module<double>, threaded_loop>>);
+        CHECK(attention_call<host_attention_call<double, matrix_module<double>>>);
         CHECK(attention_projections<matrix_module<float>, float>);
         CHECK_FALSE(attention_projections<matrix_module<float>, double>);
         CHECK_FALSE(attention_projections<without_heads, float>);
@@ -124,7 +124,7 @@ TEST_SUITE("injection/host_attention_call") {
         auto const f = random_features<double>({3, tokens, channels}, 2);
         threaded_loop const loop(3);
         call_of<double> call({}, frames, f, module);
-        host_attention_call<double, matrix_module<double>, threaded_loop> threaded({}, frames, f, module, loop);
+        host_attention_call<double, matrix_module<double>> threaded({}, frames, f, module, loop);
         CHECK(equal_bits(plain_attention{}(call), plain_attention{}(threaded)));
     }
 

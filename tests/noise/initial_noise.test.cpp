@@ -23,9 +23,10 @@ using genrender::testing::random_scene;
 
 namespace {
 
-template <class Real = double, parallel_loop Loop = sequential_loop>
+template <class Real = double>
 stack<Real, 4> noise_of(uv_maps const& maps, std::size_t channels, grid_extents grid,
-                        std::vector<frame_index> const& frames, noise_settings const& settings, Loop const& loop = {}) {
+                        std::vector<frame_index> const& frames, noise_settings const& settings,
+                        any_loop const& loop = {}) {
     stack<Real, 4> z({frames.size(), channels, grid.height, grid.width});
     std::fill(z.data(), z.data() + z.size(), std::numeric_limits<Real>::quiet_NaN());
     initial_noise(z.view(), to_uv_view(maps), frames, settings, loop);

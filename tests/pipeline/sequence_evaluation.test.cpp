@@ -33,11 +33,10 @@ struct strip_run {
                              return true;
                          }};
     render_report report;
-    sequence_run<analytic_denoiser<double>, shifted_strip, threaded_loop> run{&phi,  &maps,  &settings,
-                                                                              &loop, &meter, &report};
+    sequence_run<analytic_denoiser<double>, shifted_strip> run{&phi, &maps, &settings, loop, &meter, &report};
     latents<double> z = latents<double>::from_shape({5, 3, 1, 4});
     latents<double> x0 = latents<double>::from_shape({5, 3, 1, 4});
-    sequence_evaluation<analytic_denoiser<double>, shifted_strip, threaded_loop> evaluation{run, x0, z, 0.5, 2};
+    sequence_evaluation<analytic_denoiser<double>, shifted_strip> evaluation{run, x0, z, 0.5, 2};
 
     strip_run() {
         settings.steps = 4;

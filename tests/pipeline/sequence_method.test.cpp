@@ -17,8 +17,7 @@ using namespace genrender;
 
 namespace {
 
-using evaluation_type =
-    sequence_evaluation<testing::analytic_denoiser<double>, correspondence_map_archetype, sequential_loop>;
+using evaluation_type = sequence_evaluation<testing::analytic_denoiser<double>, correspondence_map_archetype>;
 
 /// A user's method: the middle frame runs as a keyframe, then all frames by themselves.
 struct middle_first {

@@ -79,7 +79,7 @@ bool is_equal(std::filesystem::path const& folder) {
     std::array const frames{frame_index{0}};
     plain_attention const plain;
     sequential_loop const loop;
-    forward_pass<float, plain_attention const, sequential_loop> pass{frames, 0, prompt, &plain, &loop};
+    forward_pass<float> pass{frames, 0, prompt, plain, loop};
     site_list sites(z.grid());
     // One network after the other, so that one at a time is in memory.
     auto const added = [&] {

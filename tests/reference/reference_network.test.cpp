@@ -24,7 +24,7 @@ using namespace genrender::reference;
 using namespace genrender::testing;
 
 static_assert(denoiser<reference_network<float>>);
-static_assert(denoiser<reference_network<double, threaded_loop>>);
+static_assert(denoiser<reference_network<double>>);
 static_assert(residual_lender<reference_network<float>>);
 
 namespace {
@@ -43,9 +43,9 @@ stack<float, 3> moving_box() {
     return depth;
 }
 
-template <class Real, class Loop = sequential_loop>
-reference_network<Real, Loop> small_network(char const* prompt = "stripes", Real guidance = 2, Loop loop = {}) {
-    return reference_network<Real, Loop>::seeded(moving_box(), prompt, 1, guidance, loop, small_config());
+template <class Real>
+reference_network<Real> small_network(char const* prompt = "stripes", Real guidance = 2, any_loop loop = {}) {
+    return reference_network<Real>::seeded(moving_box(), prompt, 1, guidance, loop, small_config());
 }
 
 template <class Network, class Real>
@@ -238,8 +238,7 @@ TEST_SUITE("reference/reference_network") {
         auto const expected =
             estimate_of(reference_network<Real>(source, source.conditioning(moving_box(), "red dots", 3)), z, Real(2));
         source.save(folder.path());
-        auto const network =
-            reference_network<Real, threaded_loop>::from_folder(folder.path(), moving_box(), "red dots", 3);
+        auto const network = reference_network<Real>::from_folder(folder.path(), moving_box(), "red dots", 3);
         CHECK(network.config().prediction_type == prediction::clean);
         CHECK(largest_difference(expected, estimate_of(network, z, Real(2))) == 0);
         CHECK_THROWS_AS(reference_network<Real>::from_folder(folder.path(), moving_box(), "marble"), value_error);

@@ -78,7 +78,7 @@ struct small_pass {
     stack<Real, 2> prompt = random_stack<Real, 2>({3, 6}, 11);
     plain_attention processor{};
     sequential_loop loop{};
-    forward_pass<Real, plain_attention, sequential_loop> pass{frames, 0, prompt.view(), &processor, &loop};
+    forward_pass<Real> pass{frames, 0, prompt.view(), processor, loop};
 
     explicit small_pass(unet_config const& config = small_config()) {
         auto const time = random_stack<Real, 1>({config.time_channels()}, 12);

@@ -114,8 +114,7 @@ TEST_SUITE("reference/transformer_block") {
         attention_place place;
         ones_attention ones{&f, &place};
         small_pass<double> small;
-        forward_pass<double, ones_attention, sequential_loop> const pass{small.frames, 1, small.prompt.view(), &ones,
-                                                                         &small.loop};
+        forward_pass<double> const pass{small.frames, 1, small.prompt.view(), ones, small.loop};
         auto const x = random_maps<double>(2, {4, 4}, 8, 2);
         auto with_ones = x;
         block(pass, with_ones);

@@ -59,7 +59,7 @@ TEST_SUITE("reference/unet") {
             auto const prompt = golden_stack<Real, 2>(name + ".prompt", {golden.tokens, config.cross_attention_dim});
             plain_attention const plain;
             sequential_loop const loop;
-            forward_pass<Real, plain_attention const, sequential_loop> pass{frames, 0, prompt.view(), &plain, &loop};
+            forward_pass<Real> pass{frames, 0, prompt.view(), plain, loop};
             auto const input = [](std::string const& of, grid_extents grid, std::size_t channels) {
                 feature_maps<Real> maps(1, grid, channels);
                 auto const values = golden_stack<Real, 4>(of, {1, channels, grid.height, grid.width});

@@ -34,10 +34,10 @@ inline namespace GENRENDER_UNIT {
 /// last bit: neither on the other queries, nor on `loop`, nor on where one block ends and the next begins. F shares no
 /// memory with Q, K or V. Throws shape_error if F, K, V or counts do not fit, value_error if heads do not divide the
 /// channels, no block holds a token or a count is not above 0.
-template <class Real, parallel_loop Loop = sequential_loop>
+template <class Real>
 void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
                         std::type_identity_t<std::span<key_value_view<Real> const>> blocks, std::size_t heads,
-                        Loop const& loop = Loop{}) {
+                        any_loop const& loop = {}) {
     auto const tokens = Q.extent(0);
     auto const channels = Q.extent(1);
     require_shape("scaled_dot_product", "F", F, Q.extents());

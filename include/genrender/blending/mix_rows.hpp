@@ -32,9 +32,9 @@ namespace genrender::detail {
 inline namespace GENRENDER_UNIT {
 
 /// mix_rows for features stored as any type.
-template <class Real, class Stored, class Loop>
+template <class Real, class Stored>
 void mix_stored_rows(strided_view<Real, 2> F, strided_view<Stored const, 3> const& F_KF, sparse_rows<Real> const& rows,
-                     Real alpha, Loop const& loop) {
+                     Real alpha, any_loop const& loop) {
     auto const tokens = F.extent(0);
     auto const channels = F.extent(1);
     require_shape("mix_rows", "F_KF", F_KF, {F_KF.extent(0), F_KF.extent(1), channels});
@@ -71,18 +71,18 @@ inline namespace GENRENDER_UNIT {
 /// Any strides; rows of neighbouring channels are fastest: each is read once and written once, all of its sources
 /// beside each other. With alpha = 1 the former F is not read. Tokens run through `loop`. Throws value_error for a
 /// source beyond F_KF, shape_error if the channels or the rows do not fit.
-template <class Real, parallel_loop Loop = sequential_loop>
+template <class Real>
 void mix_rows(strided_view<Real, 2> F, in_view<Real, 3> F_KF, sparse_rows<std::type_identity_t<Real>> const& rows,
-              std::type_identity_t<Real> alpha, Loop const& loop = {}) {
+              std::type_identity_t<Real> alpha, any_loop const& loop = {}) {
     detail::mix_stored_rows<Real, Real>(F, F_KF, rows, alpha, loop);
 }
 
 /// The same from features stored in 16 bits; arithmetic is done in `Real`.
-template <class Real, class Stored, parallel_loop Loop = sequential_loop>
+template <class Real, class Stored>
     requires half_storage<Stored>
 void mix_rows(strided_view<Real, 2> F, strided_view<Stored, 3> F_KF,
               sparse_rows<std::type_identity_t<Real>> const& rows, std::type_identity_t<Real> alpha,
-              Loop const& loop = {}) {
+              any_loop const& loop = {}) {
     detail::mix_stored_rows(F, to_bits_view(F_KF), rows, alpha, loop);
 }
 

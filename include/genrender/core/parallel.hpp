@@ -13,6 +13,8 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace genrender {
@@ -29,6 +31,24 @@ namespace genrender {
 template <class Loop>
 concept parallel_loop = requires(Loop const& loop, std::size_t count, void (*body)(std::size_t)) {
     loop(count, body);
+};
+
+/// What a loop calls with each of its indices, whatever its type: a reference to a function that outlives the loop.
+class loop_body {
+public:
+    template <class Body>
+        requires(!std::is_same_v<std::remove_cvref_t<Body>, loop_body>)
+    loop_body(Body&& body)
+        : body_(std::addressof(body)), call_([](void const* function, std::size_t i) {
+              using function_type = std::remove_reference_t<Body>;
+              (*const_cast<function_type*>(static_cast<std::remove_const_t<function_type> const*>(function)))(i);
+          }) {}
+
+    void operator()(std::size_t i) const { call_(body_, i); }
+
+private:
+    void const* body_;
+    void (*call_)(void const*, std::size_t);
 };
 
 /// The loop on the caller's thread, in order.
@@ -144,8 +164,7 @@ public:
 
     std::size_t threads() const { return threads_; }
 
-    template <class Body>
-    void operator()(std::size_t count, Body&& body) const {
+    void operator()(std::size_t count, loop_body body) const {
         auto const workers = std::min(threads_, count);
         if (workers <= 1) {
             sequential_loop{}(count, body);
@@ -176,6 +195,35 @@ public:
 private:
     std::size_t threads_;
     std::shared_ptr<detail::worker_pool> pool_;
+};
+
+/// Any parallel_loop, so that what takes a loop is compiled once for all of them; itself a model. Copies share the loop.
+class any_loop {
+public:
+    /// The loop on the caller's thread, in order.
+    any_loop() = default;
+    any_loop(sequential_loop) {}
+
+    /// A copy of `loop`.
+    template <parallel_loop Loop>
+        requires(!std::is_same_v<Loop, any_loop> && !std::is_same_v<Loop, sequential_loop>)
+    any_loop(Loop loop)
+        : loop_(std::make_shared<Loop const>(std::move(loop))),
+          run_([](void const* run, std::size_t count, loop_body body) {
+              (*static_cast<Loop const*>(run))(count, body);
+          }) {}
+
+    void operator()(std::size_t count, loop_body body) const {
+        if (run_ == nullptr) {
+            sequential_loop{}(count, body);
+        } else {
+            run_(loop_.get(), count, body);
+        }
+    }
+
+private:
+    std::shared_ptr<void const> loop_;
+    void (*run_)(void const*, std::size_t, loop_body) = nullptr;
 };
 
 } // namespace genrender

@@ -52,10 +52,10 @@ public:
 
     /// Reads maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, canonical
     /// coordinates are not finite, or reach is not above 0.
-    template <canonical_maps Maps, parallel_loop Loop = sequential_loop>
+    template <canonical_maps Maps>
         requires(Maps::dimensions == D)
     footprint_map(Maps const& maps, grid_extents grid, footprint_map_settings const& settings = {},
-                  Loop const& loop = {})
+                  any_loop const& loop = {})
         : grid_(grid), matches_(std::make_shared<kept_matches>(settings.kept_bytes)),
           recent_(std::make_shared<recent_frames<kept_frame<D>>>(settings.kept_frames)) {
         require_value(settings.reach > 0, "footprint_map", "settings.reach", settings.reach, "a number above 0");
@@ -234,8 +234,8 @@ private:
 };
 
 /// Deduces the dimensions from the maps.
-template <canonical_maps Maps, parallel_loop Loop = sequential_loop>
-footprint_map(Maps const&, grid_extents, footprint_map_settings const& = {}, Loop const& = {})
+template <canonical_maps Maps>
+footprint_map(Maps const&, grid_extents, footprint_map_settings const& = {}, any_loop const& = {})
     -> footprint_map<Maps::dimensions>;
 
 } // namespace genrender

@@ -47,10 +47,10 @@ public:
 
     /// Of maps for feature maps of `grid`; what views view must outlive it and stay as it is. Throws as the chosen map
     /// does, value_error for texels of maps that are not UV maps.
-    template <canonical_maps Maps, parallel_loop Loop = sequential_loop>
+    template <canonical_maps Maps>
         requires(Maps::dimensions == D)
     surface_correspondence(Maps const& maps, grid_extents grid, correspondence_settings const& settings,
-                           Loop const& loop = {})
+                           any_loop const& loop = {})
         : map_(make(maps, grid, settings, loop)) {}
 
     std::size_t frame_count() const {
@@ -101,9 +101,9 @@ private:
         return std::get<typename Map::point_type>(point);
     }
 
-    template <class Maps, class Loop>
+    template <class Maps>
     static any_map make(Maps const& maps, grid_extents grid, correspondence_settings const& settings,
-                        Loop const& loop) {
+                        any_loop const& loop) {
         if (settings.kind == correspondence_kind::footprint) {
             return any_map(std::in_place_type<footprints>, maps, grid, settings.footprint, loop);
         }

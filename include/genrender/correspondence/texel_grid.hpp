@@ -50,9 +50,8 @@ public:
 
     /// Compiles the UV maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, UVs
     /// are not finite, or T exceeds 2^20.
-    template <parallel_loop Loop = sequential_loop>
     texel_grid(uv_maps_view const& maps, grid_extents grid, texel_grid_settings const& settings = {},
-               Loop const& loop = {})
+               any_loop const& loop = {})
         : frames_(maps.frame_count()), grid_(grid), cell_(cell_extents("texel_grid", maps.grid(), grid)),
           resolution_(settings.T > 0 ? texture_resolution::same(settings.T)
                                      : texture_resolution::matched(maps, grid, texels_per_token(cell_))) {
@@ -109,8 +108,7 @@ private:
     };
 
     /// Notes which texel each token reads and numbers those texels.
-    template <class Loop>
-    void number_slots(uv_maps_view const& maps, Loop const& loop) {
+    void number_slots(uv_maps_view const& maps, any_loop const& loop) {
         auto const tokens = grid_.size();
         std::vector<texel> texels(frames_ * tokens);
         read_.assign(frames_ * tokens, not_covered);

@@ -22,9 +22,9 @@ namespace genrender {
 namespace detail {
 
 /// Fills row i of a stack [count, dimension] with `embed(i)`. Throws shape_error if a vector has another length.
-template <image_text_embedder Embedder, class Embed, class Loop>
+template <image_text_embedder Embedder, class Embed>
 stack<typename Embedder::real_type, 2> embed_rows(Embedder const& embedder, std::size_t count, Embed const& embed,
-                                                  Loop const& loop) {
+                                                  any_loop const& loop) {
     std::size_t const dimension = embedder.dimension();
     stack<typename Embedder::real_type, 2> rows({count, dimension});
     loop(count, [&](std::size_t i) {
@@ -38,9 +38,9 @@ stack<typename Embedder::real_type, 2> embed_rows(Embedder const& embedder, std:
 } // namespace detail
 
 /// The embedding of every frame of `images` [frames, channels, height, width], values in [0, 1]: [frames, dimension].
-template <image_text_embedder Embedder, parallel_loop Loop = sequential_loop>
+template <image_text_embedder Embedder>
 stack<typename Embedder::real_type, 2>
-embed_frames(Embedder const& embedder, in_view<typename Embedder::real_type, 4> images, Loop const& loop = {}) {
+embed_frames(Embedder const& embedder, in_view<typename Embedder::real_type, 4> images, any_loop const& loop = {}) {
     return detail::embed_rows(
         embedder, images.extent(0), [&](std::size_t i) { return embedder.embed_image(images[i]); }, loop);
 }

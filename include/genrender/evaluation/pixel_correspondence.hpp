@@ -52,8 +52,7 @@ public:
     /// Pixels of images of `grid` by UV maps of the same or a finer resolution; `reach` in pixels, in (0, 0.5]: a
     /// smaller one leaves fewer, closer pairs. Throws value_error if the grid does not divide the maps, UVs are not
     /// finite, or reach is out of range.
-    template <parallel_loop Loop = sequential_loop>
-    pixel_correspondence(uv_maps_view const& maps, grid_extents grid, double reach = 0.25, Loop const& loop = {})
+    pixel_correspondence(uv_maps_view const& maps, grid_extents grid, double reach = 0.25, any_loop const& loop = {})
         : objects_(maps, grid), reach_(reach), frames_(maps.frame_count()) {
         require_value(reach > 0 && reach <= 0.5, "pixel_correspondence", "reach", reach, "a number in (0, 0.5]");
         loop(frames_.size(), [&](std::size_t i) { index(maps, {static_cast<std::uint32_t>(i)}); });

@@ -29,18 +29,18 @@ concept attention_projections = requires(Projections const& module, strided_view
 };
 
 /// A model of attention_call over views: `f` is read where the engine keeps it, results are new memory that the handle
-/// owns. Frames run through `Loop`. Features can be kept in 16 bits (storing_attention_call).
-template <class Real, attention_projections<Real> Projections, parallel_loop Loop = sequential_loop>
+/// owns. Frames run through `loop`. Features can be kept in 16 bits (storing_attention_call).
+template <class Real, attention_projections<Real> Projections>
 class host_attention_call {
 public:
     using real_type = Real;
     using features_type = host_features<Real>;
 
     /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]. Throws shape_error if f
-    /// has another number of frames. `frames`, f, `module` and `loop` must outlive the call.
+    /// has another number of frames. `frames`, f and `module` must outlive the call.
     host_attention_call(attention_place place, std::span<frame_index const> frames, features_type f,
-                        Projections const& module, Loop const& loop = default_loop())
-        : place_(place), frames_(frames), f_(std::move(f)), module_(&module), loop_(&loop) {
+                        Projections const& module, any_loop loop = {})
+        : place_(place), frames_(frames), f_(std::move(f)), module_(&module), loop_(std::move(loop)) {
         require_extents("host_attention_call", "f", f_.extents(),
                         std::array{frames.size(), f_.extents()[1], f_.extents()[2]});
     }
@@ -64,13 +64,13 @@ public:
         require_extents("host_attention_call::attend", "sources", std::array{sources.size()},
                         std::array{Q.extents()[0]});
         auto F = features_type::allocate(Q.extents());
-        (*loop_)(sources.size(), [&](std::size_t i) {
+        loop_(sources.size(), [&](std::size_t i) {
             std::vector<key_value_view<Real>> blocks;
             blocks.reserve(sources[i].size());
             for (auto const& block : sources[i]) {
                 blocks.push_back({rows_of(*block.K, block.frame), rows_of(*block.V, block.frame)});
             }
-            scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads(), *loop_);
+            scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads(), loop_);
         });
         return F;
     }
@@ -79,7 +79,7 @@ public:
     features_type mix(features_type const& F_hat, features_type const& F_KF, std::span<sparse_rows<Real> const> rows,
                       Real alpha) const {
         require_extents("host_attention_call::mix", "rows", std::array{rows.size()}, std::array{F_hat.extents()[0]});
-        (*loop_)(rows.size(), [&](std::size_t i) {
+        loop_(rows.size(), [&](std::size_t i) {
             F_KF.visit([&](auto const& kept) { post_attention(F_hat.view()[i], kept, rows[i], alpha); });
         });
         return F_hat;
@@ -91,11 +91,6 @@ public:
     }
 
 private:
-    static Loop const& default_loop() {
-        static Loop const loop{};
-        return loop;
-    }
-
     /// One frame's rows, as they are kept.
     static stored_view<Real> rows_of(features_type const& features, std::size_t frame) {
         return features.visit([frame](auto const& kept) { return stored_view<Real>(kept[frame]); });
@@ -104,8 +99,7 @@ private:
     template <class Projection>
     features_type projected(features_type const& f, Projection const& project) const {
         auto out = features_type::allocate(f.extents());
-        (*loop_)(f.extents()[0],
-                 [&](std::size_t i) { project(out.view()[i], strided_view<Real const, 2>(f.view()[i])); });
+        loop_(f.extents()[0], [&](std::size_t i) { project(out.view()[i], strided_view<Real const, 2>(f.view()[i])); });
         return out;
     }
 
@@ -113,7 +107,7 @@ private:
     std::span<frame_index const> frames_;
     features_type f_;
     Projections const* module_;
-    Loop const* loop_;
+    any_loop loop_;
 };
 
 } // namespace genrender

@@ -140,11 +140,11 @@ grid_check check_frame(Map const& map, Maps const& maps, frame_index i,
 
 /// Measures a correspondence map over `maps` at some `frames` by the keyframes of some `steps`. `searches` holds every
 /// keyframe; about `tokens` of each frame's are searched for.
-template <correspondence_map Map, canonical_maps Maps, parallel_loop Loop = sequential_loop>
+template <correspondence_map Map, canonical_maps Maps>
 grid_check check_grid(Map const& map, Maps const& maps, std::vector<frame_index> const& frames,
                       std::vector<std::vector<frame_index>> const& steps,
                       std::map<frame_index, screen_search<Maps>> const& searches, std::size_t tokens = 1024,
-                      Loop const& loop = {}) {
+                      any_loop const& loop = {}) {
     std::vector<grid_check> of_frame(frames.size());
     loop(frames.size(),
          [&](std::size_t k) { of_frame[k] = detail::check_frame(map, maps, frames[k], steps, searches, tokens); });

@@ -106,8 +106,8 @@ inline void add_sample(object_check& all, object_check const& one) {
 
 /// Looks at maps without judging them: never throws for what they hold, and does not depend on the threads of `loop`.
 /// Time grows with the number of pixels only as counting does; memory beyond the maps does not.
-template <canonical_maps Maps, parallel_loop Loop = sequential_loop>
-map_check check_maps(Maps const& maps, map_check_settings const& settings = {}, Loop const& loop = {}) {
+template <canonical_maps Maps>
+map_check check_maps(Maps const& maps, map_check_settings const& settings = {}, any_loop const& loop = {}) {
     constexpr auto D = Maps::dimensions;
     using inspection = frame_inspection<Maps>;
     std::size_t const count = maps.frame_count();

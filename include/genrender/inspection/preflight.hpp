@@ -90,9 +90,9 @@ void draw_sample_steps(preflight_report& report, render_settings<Real> const& se
 }
 
 /// Compiles and measures every grid over maps that are finite.
-template <canonical_maps Maps, class Loop>
+template <canonical_maps Maps>
 void check_grids(preflight_report& report, Maps const& maps, correspondence_settings const& settings,
-                 std::size_t tokens, Loop const& loop) {
+                 std::size_t tokens, any_loop const& loop) {
     std::vector<frame_index> drawn;
     for (auto const& keyframes : report.keyframes) {
         drawn.insert(drawn.end(), keyframes.begin(), keyframes.end());
@@ -156,9 +156,9 @@ inline void recommend_on_grids(preflight_report& report, correspondence_kind kin
 /// by the correspondence that the settings choose and the keyframes that its steps draw, and what the maps tell of
 /// themselves. What cannot be measured, for bad contents, settings or grids, is said in a recommendation; nothing of
 /// these throws. Does not depend on the threads of `loop` but for the seconds.
-template <canonical_maps Maps, class Real, parallel_loop Loop = sequential_loop>
+template <canonical_maps Maps, class Real>
 preflight_report preflight(Maps const& maps, std::vector<grid_extents> grids, render_settings<Real> const& settings,
-                           Loop const& loop = {}, preflight_settings const& how = {}) {
+                           any_loop const& loop = {}, preflight_settings const& how = {}) {
     using clock = std::chrono::steady_clock;
     auto const seconds_since = [](clock::time_point start) {
         return std::chrono::duration<double>(clock::now() - start).count();

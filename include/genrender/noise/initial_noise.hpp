@@ -105,9 +105,9 @@ inline void require_noise_settings(noise_settings const& settings) {
 /// readings of texels on the T that all frames of the maps give its objects. Throws shape_error if `frames` does not
 /// count the entries of z, value_error if a frame is not in the maps, the latents do not divide them, a coordinate is
 /// not finite, or settings contradict each other or, with texels, the maps are not UV maps.
-template <class Real, canonical_maps Maps, parallel_loop Loop = sequential_loop>
+template <class Real, canonical_maps Maps>
 void initial_noise(strided_view<Real, 4> z, Maps const& maps, std::span<frame_index const> frames,
-                   noise_settings const& settings, Loop const& loop = {}) {
+                   noise_settings const& settings, any_loop const& loop = {}) {
     require_extents("initial_noise", "frames", std::array{frames.size()}, std::array{z.extent(0)});
     grid_extents const grid{z.extent(2), z.extent(3)};
     cell_extents("initial_noise", maps.grid(), grid);

@@ -88,11 +88,11 @@ using map_made_by = std::invoke_result_t<MakeMap const&, grid_extents>;
 /// correspondence map of a feature resolution. The same seeds give the same frames with every `loop`, bit for bit.
 /// Throws value_error or shape_error for arguments that do not fit, before anything is run; cancelled if the observer
 /// ends the run; what the denoiser throws.
-template <denoiser Phi, canonical_maps Maps, class MakeMap, parallel_loop Loop = sequential_loop,
-          sequence_method<sequence_evaluation<Phi, map_made_by<MakeMap>, Loop>> Method>
+template <denoiser Phi, canonical_maps Maps, class MakeMap,
+          sequence_method<sequence_evaluation<Phi, map_made_by<MakeMap>>> Method>
 latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV, MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
-                                        progress_observer observer = {}, Loop const& loop = {}) {
+                                        progress_observer observer = {}, any_loop const& loop = {}) {
     using Real = typename Phi::real_type;
     require_render_settings(settings, UV.frame_count());
     require_finite_coordinates(UV);
@@ -143,11 +143,11 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
 }
 
 /// The same with the correspondence that `settings.correspondence` chooses.
-template <denoiser Phi, canonical_maps Maps, parallel_loop Loop = sequential_loop,
-          sequence_method<sequence_evaluation<Phi, surface_correspondence<Maps::dimensions>, Loop>> Method>
+template <denoiser Phi, canonical_maps Maps,
+          sequence_method<sequence_evaluation<Phi, surface_correspondence<Maps::dimensions>>> Method>
 latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
-                                        progress_observer observer = {}, Loop const& loop = {}) {
+                                        progress_observer observer = {}, any_loop const& loop = {}) {
     auto const make_map = [&](grid_extents grid) {
         return surface_correspondence<Maps::dimensions>(UV, grid, settings.correspondence, loop);
     };
@@ -155,19 +155,19 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
 }
 
 /// Alg. 1 with a correspondence of the user's own.
-template <denoiser Phi, canonical_maps Maps, class MakeMap, parallel_loop Loop = sequential_loop>
+template <denoiser Phi, canonical_maps Maps, class MakeMap>
 latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV, MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
-                                        progress_observer observer = {}, Loop const& loop = {}) {
+                                        progress_observer observer = {}, any_loop const& loop = {}) {
     require_correspondence_map<map_made_by<MakeMap>>();
     return render(generative_rendering{}, phi, UV, make_map, settings, report, std::move(observer), loop);
 }
 
 /// Alg. 1: Generative Rendering, as the paper has it.
-template <denoiser Phi, canonical_maps Maps, parallel_loop Loop = sequential_loop>
+template <denoiser Phi, canonical_maps Maps>
 latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
-                                        progress_observer observer = {}, Loop const& loop = {}) {
+                                        progress_observer observer = {}, any_loop const& loop = {}) {
     return render(generative_rendering{}, phi, UV, settings, report, std::move(observer), loop);
 }
 

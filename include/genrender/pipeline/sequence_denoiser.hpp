@@ -33,8 +33,8 @@ std::size_t step_at(std::span<Real const> sigmas, std::type_identity_t<Real> sig
 
 /// D(z, sigma) of a whole animation: a method's estimates of all frames, normalised. Any sampler drives it; it keeps
 /// nothing from one evaluation to the next, and what it draws depends on the seed and the noise level alone.
-template <denoiser Phi, correspondence_map Map, parallel_loop Loop,
-          sequence_method<sequence_evaluation<Phi, Map, Loop>> Method = generative_rendering>
+template <denoiser Phi, correspondence_map Map,
+          sequence_method<sequence_evaluation<Phi, Map>> Method = generative_rendering>
 class sequence_denoiser {
 public:
     using real_type = typename Phi::real_type;
@@ -44,9 +44,9 @@ public:
     /// method is referred to and must outlive the sequence denoiser.
     sequence_denoiser(Phi const& phi, correspondence_set<Map> const& maps,
                       strided_view<std::uint8_t const, 3> background, std::span<real_type const> sigmas,
-                      render_settings<real_type> const& settings, Loop const& loop, progress_meter& meter,
+                      render_settings<real_type> const& settings, any_loop loop, progress_meter& meter,
                       render_report& report, Method method = {})
-        : run_{&phi, &maps, &settings, &loop, &meter, &report}, background_(background), sigmas_(sigmas),
+        : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, background_(background), sigmas_(sigmas),
           method_(std::move(method)) {}
 
     /// The clean estimates of all frames of z [frames, channels, height, width]. Throws value_error if an estimate is
@@ -54,7 +54,7 @@ public:
     latents<real_type> operator()(latents<real_type> const& z, real_type sigma) const {
         auto const step = step_at(sigmas_, sigma);
         auto x0 = latents<real_type>::from_shape(z.shape());
-        method_(sequence_evaluation<Phi, Map, Loop>(run_, x0, z, sigma, step));
+        method_(sequence_evaluation<Phi, Map>(run_, x0, z, sigma, step));
         require_finite(x0, step);
         auto const& normalization = run_.settings->normalization;
         if (normalization.enabled && !normalization.on_noisy_latents) {
@@ -87,7 +87,7 @@ private:
         }
     }
 
-    sequence_run<Phi, Map, Loop> run_;
+    sequence_run<Phi, Map> run_;
     strided_view<std::uint8_t const, 3> background_;
     std::span<real_type const> sigmas_;
     Method method_;

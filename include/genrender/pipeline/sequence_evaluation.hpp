@@ -33,20 +33,20 @@
 
 namespace genrender {
 
-/// What all evaluations of a run share. Everything is referred to.
-template <denoiser Phi, correspondence_map Map, parallel_loop Loop>
+/// What all evaluations of a run share. All but the loop is referred to.
+template <denoiser Phi, correspondence_map Map>
 struct sequence_run {
     Phi const* phi;
     correspondence_set<Map> const* maps;
     render_settings<typename Phi::real_type> const* settings;
-    Loop const* loop;
+    any_loop loop;
     progress_meter* meter;
     render_report* report;
 };
 
 /// The passes over an animation at one noise level. A pass gives the denoiser stacks of frames with a processor, counts
 /// them for the observer and its seconds for the report; the method decides on passes and processors.
-template <denoiser Phi, correspondence_map Map, parallel_loop Loop>
+template <denoiser Phi, correspondence_map Map>
 class sequence_evaluation {
 public:
     using real_type = typename Phi::real_type;
@@ -56,7 +56,7 @@ public:
 
     /// Reads z and writes the clean estimates x0, both [frames, channels, height, width]. Everything is referred to and
     /// must outlive the evaluation.
-    sequence_evaluation(sequence_run<Phi, Map, Loop> const& run, latents<real_type>& x0, latents<real_type> const& z,
+    sequence_evaluation(sequence_run<Phi, Map> const& run, latents<real_type>& x0, latents<real_type> const& z,
                         real_type sigma, std::size_t step)
         : run_(&run), x0_(&x0), z_(&z), sigma_(sigma), step_(step) {}
 
@@ -145,7 +145,7 @@ public:
     /// `make_processor(frames)` gives. Calls may run at the same time.
     template <class MakeProcessor>
     void denoise_frames(MakeProcessor const& make_processor) const {
-        denoise_frames(*run_->loop, make_processor);
+        denoise_frames(run_->loop, make_processor);
     }
 
     /// The same one call after the other, from the first frame on, for methods in which a frame needs the one before.
@@ -195,8 +195,8 @@ private:
         }
     }
 
-    template <class CallLoop, class MakeProcessor>
-    void denoise_frames(CallLoop const& loop, MakeProcessor const& make_processor) const {
+    template <class MakeProcessor>
+    void denoise_frames(any_loop const& loop, MakeProcessor const& make_processor) const {
         auto const count = frame_count();
         auto const stride = std::min(settings().frames_per_call, count);
         run_->meter->begin(step_, render_pass::frames, count);
@@ -228,7 +228,7 @@ private:
         run_->report->add_seconds(seconds * share, seconds * (1 - share));
     }
 
-    sequence_run<Phi, Map, Loop> const* run_;
+    sequence_run<Phi, Map> const* run_;
     latents<real_type>* x0_;
     latents<real_type> const* z_;
     real_type sigma_;

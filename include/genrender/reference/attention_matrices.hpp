@@ -36,8 +36,7 @@ public:
     /// V = W^V f [tokens, channels] for f [tokens, source_channels].
     void value(strided_view<Real, 2> V, in_view<Real, 2> f) const { to_v_(V, f); }
     /// Adds W^O F + b to the residual `h` [tokens, channels]. Tokens are shared out over `loop`.
-    template <parallel_loop Loop = sequential_loop>
-    void add_output(strided_view<Real, 2> h, in_view<Real, 2> F, Loop const& loop = Loop()) const {
+    void add_output(strided_view<Real, 2> h, in_view<Real, 2> F, any_loop const& loop = {}) const {
         to_out_.add_to(h, F, loop);
     }
 

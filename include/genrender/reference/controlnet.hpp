@@ -76,8 +76,7 @@ public:
 
     /// What to add to the UNet's skips and mid block, times `scale`, for z [frames, tokens, in_channels] at time t and
     /// one embedded hint a frame.
-    template <class Pass>
-    encoded_maps<Real> operator()(Pass& pass, feature_maps<Real> const& z, Real t,
+    encoded_maps<Real> operator()(forward_pass<Real>& pass, feature_maps<Real> const& z, Real t,
                                   std::vector<feature_maps<Real> const*> const& hints, Real scale = 1) const {
         require_extents("controlnet", "hints", std::array{hints.size()}, std::array{z.frames()});
         auto result = encoder_(pass, z, t, hints);
@@ -89,8 +88,8 @@ public:
     }
 
 private:
-    template <class Pass>
-    static void project(Pass const& pass, feature_maps<Real>& maps, conv2d<Real> const& conv, Real scale) {
+    static void project(forward_pass<Real> const& pass, feature_maps<Real>& maps, conv2d<Real> const& conv,
+                        Real scale) {
         auto result = pass.maps(maps.grid(), maps.channels());
         pass.each_frame([&](std::size_t i) {
             conv(result[i], maps[i], maps.grid(), pass.tokens());

@@ -52,9 +52,8 @@ public:
 
     /// Writes the result [tokens of out_grid(grid), out] for `in` [tokens of grid, in]; rows of both contiguous, memory
     /// of its own for each. Tokens are shared out over `loop`. Throws shape_error if they do not fit.
-    template <parallel_loop Loop = sequential_loop>
     void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, grid_extents grid,
-                    Loop const& loop = Loop()) const {
+                    any_loop const& loop = {}) const {
         require_shape("conv2d", "in", in, {grid.size(), in_});
         if (kernel_ > 1) {
             (*this)(out, padded_map<Real>(in, grid), {bias_}, loop);
@@ -70,9 +69,8 @@ public:
 
     /// Writes the result of a 3x3 kernel for a map that lies in its ring already. `terms` are all that is added to the
     /// products: bias() or what stands for it, and a residual. Throws shape_error if they do not fit.
-    template <parallel_loop Loop = sequential_loop>
     void operator()(strided_view<Real, 2> out, padded_map<Real> const& in, product_terms<Real> const& terms,
-                    Loop const& loop = Loop()) const {
+                    any_loop const& loop = {}) const {
         assert(kernel_ == 3 && "conv2d: a padded map is for kernels of 3");
         auto const to_grid = out_grid(in.grid());
         require_extents("conv2d", "channels of in", std::array{in.channels()}, std::array{in_});

@@ -33,9 +33,8 @@ public:
 
     /// For hints [frames, conditioning_channels, height, width] of a ControlNet. Embeddings of the first frames are
     /// made once and kept, as many as fit into `most_bytes`; at least one.
-    template <parallel_loop Loop>
     embedded_hints(std::shared_ptr<controlnet<Real> const> control, stack<Real, 4> hint, std::size_t most_bytes,
-                   Loop const& loop)
+                   any_loop const& loop)
         : control_(std::move(control)), hint_(std::move(hint)), frames_(hint_.extent(0)) {
         if (frames_ == 0) {
             return;
@@ -54,8 +53,7 @@ public:
     std::size_t kept_count() const { return kept_.size(); }
 
     /// The embeddings of frames below frame_count(). What is kept must outlive the result.
-    template <parallel_loop Loop>
-    of_call at(std::span<frame_index const> frames, Loop const& loop) const {
+    of_call at(std::span<frame_index const> frames, any_loop const& loop) const {
         of_call result;
         result.made.resize(frames.size());
         result.hints.resize(frames.size());

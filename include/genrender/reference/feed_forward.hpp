@@ -27,8 +27,7 @@ public:
 
     /// Adds the result for x [tokens, channels] to the residual `h` [tokens, channels]. Tokens are shared out over
     /// `loop`.
-    template <parallel_loop Loop = sequential_loop>
-    void add_to(strided_view<Real, 2> h, in_view<Real, 2> x, Loop const& loop = Loop()) const {
+    void add_to(strided_view<Real, 2> h, in_view<Real, 2> x, any_loop const& loop = {}) const {
         auto const tokens = x.extent(0);
         auto const width = out_.in_channels();
         // What lies between both matrices is 8 times as wide as x: a few tokens at a time stay in the second cache.

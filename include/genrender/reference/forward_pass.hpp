@@ -4,60 +4,75 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/attention/attention_processor.hpp>
+#include <genrender/attention/attention_site.hpp>
+#include <genrender/attention/host_features.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
+#include <genrender/injection/host_attention_call.hpp>
+#include <genrender/reference/attention_matrices.hpp>
 #include <genrender/reference/feature_maps.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace genrender::reference {
 
-/// The loop inside a frame: shares out a layer's tokens and channels where there are no frames to share out.
-template <parallel_loop Loop>
-struct token_loop {
-    Loop const* loop = nullptr; ///< none: on the caller's thread
+/// Any attention_processor, so that the layers are compiled once for all of them: a reference to one that outlives the
+/// pass.
+template <class Real>
+class any_processor {
+public:
+    using call_type = host_attention_call<Real, attention_matrices<Real>>;
 
-    template <class Body>
-    void operator()(std::size_t count, Body&& body) const {
-        if (loop != nullptr && count > 1) {
-            (*loop)(count, body);
-        } else {
-            sequential_loop{}(count, body);
-        }
+    template <class Processor>
+        requires(!std::is_same_v<std::remove_const_t<Processor>, any_processor>)
+    any_processor(Processor& processor)
+        : processor_(&processor), run_([](void const* object, call_type& call) -> host_features<Real> {
+              return (*const_cast<Processor*>(static_cast<Processor const*>(object)))(call);
+          }),
+          is_plain_at_([](void const* object, attention_place place) {
+              return genrender::is_plain_at(*static_cast<Processor const*>(object), place);
+          }) {
+        static_assert(attention_processor<Processor, call_type>,
+                      "reference_network: the processor does not model attention_processor");
     }
+
+    host_features<Real> operator()(call_type& call) const { return run_(processor_, call); }
+    bool is_plain_at(attention_place place) const { return is_plain_at_(processor_, place); }
+
+private:
+    void const* processor_;
+    host_features<Real> (*run_)(void const*, call_type&);
+    bool (*is_plain_at_)(void const*, attention_place);
 };
 
 /// One run of one network for one guidance branch. All frames pass a layer before any enters the next, because a
 /// processor may let frames attend to each other [GR eq. 3].
-template <class Real, class Processor, parallel_loop Loop>
+template <class Real>
 struct forward_pass {
-    using real_type = Real;
-    using processor_type = Processor;
-    using loop_type = Loop;
-
     std::span<frame_index const> frames; ///< which frame of the animation each entry of a stack is
     std::uint32_t branch = 0;            ///< guidance branch
     strided_view<Real const, 2> prompt;  ///< tokens of the prompt [tokens, cross_attention_dim]
-    Processor* processor = nullptr;      ///< runs at the self-attention sites
-    Loop const* loop = nullptr;          ///< over frames
+    any_processor<Real> processor;       ///< runs at the self-attention sites
+    any_loop loop{};                     ///< over frames
     std::vector<Real> time{};            ///< of the network's time_embedding, after SiLU [time_channels]
 
     /// Calls `body(i)` for every entry of the stack.
-    template <class Body>
-    void each_frame(Body&& body) const {
+    void each_frame(loop_body body) const {
         if (frames.size() == 1) {
-            body(std::size_t{0}); // The threads are those of tokens() then.
+            body(0); // The threads are those of tokens() then.
         } else {
-            (*loop)(frames.size(), body);
+            loop(frames.size(), body);
         }
     }
 
-    /// The loop for the layers inside `body`.
-    token_loop<Loop> tokens() const { return {frames.size() == 1 ? loop : nullptr}; }
+    /// The loop inside `body`: shares out a layer's tokens and channels where there are no frames to share out.
+    any_loop tokens() const { return frames.size() == 1 ? loop : any_loop{}; }
 
     /// Memory for a result of all frames, not yet set.
     feature_maps<Real> maps(grid_extents grid, std::size_t channels) const { return {frames.size(), grid, channels}; }

@@ -52,8 +52,7 @@ public:
 
     /// Writes the result [tokens, channels]; `out` may be `in`. Rows of both are contiguous. Tokens and channels are
     /// shared out over `loop`. Throws shape_error if they do not fit.
-    template <parallel_loop Loop = sequential_loop>
-    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, Loop const& loop = Loop()) const {
+    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, any_loop const& loop = {}) const {
         auto const tokens = in.extent(0);
         require_shape("group_norm", "in", in, {tokens, weight_.size()});
         require_shape("group_norm", "out", out, in.extents());
@@ -67,8 +66,7 @@ public:
 
     /// Writes the SiLU of the result for `in` [tokens, channels] into a map with a ring, for a convolution. Throws
     /// shape_error if they do not fit.
-    template <parallel_loop Loop = sequential_loop>
-    void with_silu(padded_map<Real>& out, in_view<Real, 2> in, Loop const& loop = Loop()) const {
+    void with_silu(padded_map<Real>& out, in_view<Real, 2> in, any_loop const& loop = {}) const {
         require_extents("group_norm", "channels of out", std::array{out.channels()}, std::array{weight_.size()});
         require_shape("group_norm", "in", in, {out.grid().size(), weight_.size()});
         auto const line = line_of(in, loop);
@@ -88,8 +86,7 @@ private:
     /// Tokens that one thread takes at a time.
     static constexpr std::size_t block = 256;
 
-    template <class Loop>
-    internal::line_by_channel<Real> line_of(strided_view<Real const, 2> const& in, Loop const& loop) const {
+    internal::line_by_channel<Real> line_of(strided_view<Real const, 2> const& in, any_loop const& loop) const {
         auto const channels = weight_.size();
         auto const tokens = in.extent(0);
         std::vector<double> sum(channels);

@@ -33,14 +33,12 @@ public:
 
     /// Writes in W^T + b [tokens, out] for `in` [tokens, in]; rows of both contiguous. Tokens are shared out over
     /// `loop`. Throws shape_error if they do not fit.
-    template <parallel_loop Loop = sequential_loop>
-    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, Loop const& loop = Loop()) const {
+    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in, any_loop const& loop = {}) const {
         multiply(out, in, {bias_}, loop);
     }
 
     /// Adds in W^T + b to `out`: the last layer of a residual branch.
-    template <parallel_loop Loop = sequential_loop>
-    void add_to(strided_view<Real, 2> out, in_view<Real, 2> in, Loop const& loop = Loop()) const {
+    void add_to(strided_view<Real, 2> out, in_view<Real, 2> in, any_loop const& loop = {}) const {
         multiply(out, in, {bias_, out}, loop);
     }
 
@@ -56,9 +54,8 @@ private:
         }
     }
 
-    template <class Loop>
     void multiply(strided_view<Real, 2> out, in_view<Real, 2> in, product_terms<Real> const& terms,
-                  Loop const& loop) const {
+                  any_loop const& loop) const {
         auto const tokens = in.extent(0);
         require_shape("linear", "in", in, {tokens, in_channels()});
         require_shape("linear", "out", out, {tokens, out_channels()});

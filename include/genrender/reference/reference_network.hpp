@@ -36,9 +36,9 @@ namespace genrender::reference {
 
 /// A UNet with classifier-free guidance and a ControlNet, conditioned for one animation. Its sites are the ControlNet's
 /// self-attention modules (network_kind::control) and then the UNet's, as they run. Features lie in host memory; frames
-/// run through `Loop`. Copies share the weights. Runs change nothing, so several threads may run one network at once.
+/// run through `loop`. Copies share the weights. Runs change nothing, so several threads may run one network at once.
 /// It can end a call early and lends what the decoder starts from (stoppable_denoiser, residual_lender).
-template <std::floating_point Real, parallel_loop Loop = sequential_loop>
+template <std::floating_point Real>
 class reference_network {
 public:
     using real_type = Real;
@@ -52,7 +52,7 @@ public:
     /// frames as fit into `hint_bytes`, so that memory does not grow with the animation; others are embedded anew in
     /// each call, with the same result.
     reference_network(unet_config config, weights<Real>& unet_weights, weights<Real>& control_weights,
-                      network_conditioning<Real> conditioning, Loop loop = Loop(),
+                      network_conditioning<Real> conditioning, any_loop loop = {},
                       std::size_t hint_bytes = std::size_t{1} << 26)
         : config_((require_config(config), std::move(config))), conditioning_(std::move(conditioning)),
           loop_(std::move(loop)),
@@ -68,13 +68,13 @@ public:
     }
 
     /// The network of all its weights.
-    reference_network(reference_weights<Real>& source, network_conditioning<Real> conditioning, Loop loop = Loop())
+    reference_network(reference_weights<Real>& source, network_conditioning<Real> conditioning, any_loop loop = {})
         : reference_network(source.config, source.unet, source.controlnet, std::move(conditioning), std::move(loop)) {}
 
     /// A network with random weights, by default the tiny one, for inverse depth [frames, height, width] in [0, 1] (see
     /// hint_of) and a text of prompt_words. Throws as the constructor and prompt_rows do.
     static reference_network seeded(strided_view<float const, 3> inverse_depth, std::string_view prompt,
-                                    std::uint64_t seed, Real guidance_scale = 2, Loop loop = Loop(),
+                                    std::uint64_t seed, Real guidance_scale = 2, any_loop loop = {},
                                     unet_config const& config = {}) {
         auto source = reference_weights<Real>::seeded(seed, config);
         return {source, source.conditioning(inverse_depth, prompt, guidance_scale), std::move(loop)};
@@ -85,7 +85,7 @@ public:
     /// reference_weights::from_folder and prompt_rows do.
     static reference_network from_folder(std::filesystem::path const& folder,
                                          strided_view<float const, 3> inverse_depth, std::string_view prompt,
-                                         Real guidance_scale = 2, Loop loop = Loop(),
+                                         Real guidance_scale = 2, any_loop loop = {},
                                          std::filesystem::path const& controlnet_folder = {}) {
         auto source = reference_weights<Real>::from_folder(folder, controlnet_folder);
         return {source, source.conditioning(inverse_depth, prompt, guidance_scale), std::move(loop)};
@@ -102,18 +102,17 @@ public:
 
     /// Writes D(z, sigma) [EDM eq. 7] into x0; both [frames, channels, height, width] of the latents, frames[i] being
     /// entry i's place in the animation. The estimate of a frame under plain_attention is the same to the bit whatever
-    /// else is in the stack and however many threads Loop has. Throws shape_error if extents do not fit, value_error
+    /// else is in the stack and however many threads `loop` has. Throws shape_error if extents do not fit, value_error
     /// for a frame without a hint or a sigma that is not finite and at least 0.
-    template <class Processor>
     void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
-                    std::span<frame_index const> frames, Processor& processor) const {
+                    std::span<frame_index const> frames, any_processor<Real> processor) const {
         (*this)(x0, z, sigma, frames, processor, residuals_type{});
     }
 
     /// The same to the bit, in less time for frames whose way down `lent` holds.
-    template <class Processor>
     void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
-                    std::span<frame_index const> frames, Processor& processor, residuals_type const& lent) const {
+                    std::span<frame_index const> frames, any_processor<Real> processor,
+                    residuals_type const& lent) const {
         require_shape("reference_network", "x0", x0,
                       {frames.size(), config_.out_channels, latent_grid_.height, latent_grid_.width});
         auto in = frames_of(z, sigma, frames);
@@ -139,9 +138,9 @@ public:
     /// Runs the processor as a call does, in each branch up to its last site and no further; a branch without one does
     /// not run. If `lent` is not null it becomes what the decoder starts from, of the branches in which the processor
     /// is plain before. Throws as a call does, shape_error unless `last` has one entry a branch.
-    template <class Processor>
-    void run_until(strided_view<Real const, 4> z, Real sigma, std::span<frame_index const> frames, Processor& processor,
-                   std::span<std::optional<site_index> const> last, residuals_type* lent = nullptr) const {
+    void run_until(strided_view<Real const, 4> z, Real sigma, std::span<frame_index const> frames,
+                   any_processor<Real> processor, std::span<std::optional<site_index> const> last,
+                   residuals_type* lent = nullptr) const {
         require_extents("reference_network", "last", std::array{last.size()}, std::array{branches()});
         auto in = frames_of(z, sigma, frames);
         if (lent != nullptr) {
@@ -151,7 +150,7 @@ public:
             if (!last[branch]) {
                 continue;
             }
-            internal::stopping_processor<Processor> const stopping{&processor, *last[branch]};
+            internal::stopping_processor<Real> const stopping{processor, *last[branch]};
             auto pass = pass_of(branch, in, stopping);
             try {
                 auto encoded = encode(pass, in);
@@ -232,17 +231,14 @@ private:
         return config_.prediction_type == prediction::flow ? 1000 * flow_time_of(sigma) : schedule_.t_of(sigma);
     }
 
-    template <class Processor>
-    forward_pass<Real, Processor, Loop> pass_of(std::uint32_t branch, stack_of_frames const& in,
-                                                Processor& processor) const {
+    forward_pass<Real> pass_of(std::uint32_t branch, stack_of_frames const& in, any_processor<Real> processor) const {
         auto const is_empty = branch == 0 && branches() == 2;
         auto const& prompt = is_empty ? conditioning_.empty_prompt : conditioning_.prompt;
-        return {in.frames, branch, prompt.view(), &processor, &loop_};
+        return {in.frames, branch, prompt.view(), processor, loop_};
     }
 
     /// The way down of both networks.
-    template <class Pass>
-    encoded_maps<Real> encode(Pass& pass, stack_of_frames& in) const {
+    encoded_maps<Real> encode(forward_pass<Real>& pass, stack_of_frames& in) const {
         if (!in.hints) {
             in.hints = hints_.at(in.frames, loop_);
         }
@@ -251,12 +247,11 @@ private:
     }
 
     /// Whether a processor leaves everything before the decoder as it is.
-    template <class Processor>
-    bool is_plain_before_decoder(Processor const& processor, std::uint32_t branch) const {
+    bool is_plain_before_decoder(any_processor<Real> const& processor, std::uint32_t branch) const {
         for (std::uint32_t site = 0; site < sites_.size(); ++site) {
             auto const is_before =
                 sites_[site].network == network_kind::control || sites_[site].part != network_part::decoder;
-            if (is_before && !is_plain_at(processor, {{site}, branch})) {
+            if (is_before && !processor.is_plain_at({{site}, branch})) {
                 return false;
             }
         }
@@ -265,7 +260,7 @@ private:
 
     unet_config config_;
     network_conditioning<Real> conditioning_;
-    Loop loop_;
+    any_loop loop_;
     discrete_noise_schedule schedule_;
     grid_extents latent_grid_;
     std::vector<attention_site> sites_;

@@ -44,8 +44,7 @@ public:
     std::size_t out_channels() const { return conv2_.out_channels(); }
 
     /// The block's output [frames, tokens, out] on the grid of x.
-    template <class Pass>
-    feature_maps<Real> operator()(Pass const& pass, feature_maps<Real> const& x) const {
+    feature_maps<Real> operator()(forward_pass<Real> const& pass, feature_maps<Real> const& x) const {
         auto result = pass.maps(x.grid(), out_channels());
         // The same for all tokens: conv1's bias and what it is told of the time.
         std::vector<Real> shift(out_channels());
@@ -57,9 +56,8 @@ public:
     }
 
 private:
-    template <class Loop>
     void run(strided_view<Real, 2> out, in_view<Real, 2> x, grid_extents grid, std::span<Real const> shift,
-             Loop const& loop) const {
+             any_loop const& loop) const {
         auto hidden = stack<Real, 2>::uninitialized(out.extents());
         {
             padded_map<Real> normed(grid, x.extent(1));

@@ -34,8 +34,7 @@ public:
     }
 
     /// Runs in place of x [frames, tokens, channels].
-    template <class Pass>
-    void operator()(Pass const& pass, feature_maps<Real>& x) const {
+    void operator()(forward_pass<Real> const& pass, feature_maps<Real>& x) const {
         auto h = pass.maps(x.grid(), x.channels());
         pass.each_frame([&](std::size_t i) {
             auto normed = stack<Real, 2>::uninitialized(x[i].extents());

@@ -4,8 +4,9 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/attention/attention_call.hpp>
 #include <genrender/attention/attention_site.hpp>
+#include <genrender/attention/host_features.hpp>
+#include <genrender/reference/forward_pass.hpp>
 
 namespace genrender::reference {
 
@@ -15,14 +16,13 @@ namespace internal {
 struct last_site_has_run {};
 
 /// A processor that throws last_site_has_run after it ran at `last`. No layer needs to know that runs may end early.
-template <class Processor>
+template <class Real>
 struct stopping_processor {
-    Processor* processor;
+    any_processor<Real> processor;
     site_index last;
 
-    template <attention_call Call>
-    typename Call::features_type operator()(Call& call) const {
-        auto F = (*processor)(call);
+    host_features<Real> operator()(typename any_processor<Real>::call_type& call) const {
+        auto F = processor(call);
         if (call.place().site == last) {
             throw last_site_has_run{};
         }

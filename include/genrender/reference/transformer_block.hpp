@@ -59,8 +59,7 @@ public:
 
     /// Runs the block in place of h [frames, tokens, channels]. Throws shape_error if the processor returns other
     /// extents.
-    template <class Pass>
-    void operator()(Pass const& pass, feature_maps<Real>& h) const {
+    void operator()(forward_pass<Real> const& pass, feature_maps<Real>& h) const {
         attend_to_features(pass, h);
 
         // The prompt is the same for all frames.
@@ -90,16 +89,12 @@ public:
     }
 
 private:
-    template <class Pass>
-    void attend_to_features(Pass const& pass, feature_maps<Real>& h) const {
+    void attend_to_features(forward_pass<Real> const& pass, feature_maps<Real>& h) const {
         // Memory of its own for every run: a processor may keep the handle of f.
         auto const f = host_features<Real>::allocate(h.view().extents());
         pass.each_frame([&](std::size_t i) { norm1_(f.view()[i], h[i]); });
-        using call_type = host_attention_call<Real, attention_matrices<Real>, typename Pass::loop_type>;
-        static_assert(attention_processor<typename Pass::processor_type, call_type>,
-                      "reference_network: the processor does not model attention_processor");
-        call_type call({site_, pass.branch}, pass.frames, f, attn1_, *pass.loop);
-        host_features<Real> const F = (*pass.processor)(call);
+        typename any_processor<Real>::call_type call({site_, pass.branch}, pass.frames, f, attn1_, pass.loop);
+        auto const F = pass.processor(call);
         require_extents("transformer_block", "F", F.extents(), f.extents());
         pass.each_frame([&](std::size_t i) {
             stack<Real, 2> storage;

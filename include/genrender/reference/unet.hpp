@@ -47,8 +47,7 @@ public:
     }
 
     /// Runs h, joined by the last of the skips before each resnet; removes them from the list.
-    template <class Pass>
-    feature_maps<Real> operator()(Pass const& pass, feature_maps<Real> h,
+    feature_maps<Real> operator()(forward_pass<Real> const& pass, feature_maps<Real> h,
                                   std::vector<feature_maps<Real>>& skips) const {
         for (std::size_t i = 0; i < resnets_.size(); ++i) {
             auto const skip = std::move(skips.back());
@@ -89,15 +88,13 @@ public:
 
     /// The network's output [frames, tokens, out_channels] for z [frames, tokens, in_channels] at time t. `control`, if
     /// there is one, is added to the skips and to the output of the mid block.
-    template <class Pass>
-    feature_maps<Real> operator()(Pass& pass, feature_maps<Real> const& z, Real t,
+    feature_maps<Real> operator()(forward_pass<Real>& pass, feature_maps<Real> const& z, Real t,
                                   encoded_maps<Real> const* control = nullptr) const {
         return decode(pass, encode(pass, z, t, control));
     }
 
     /// The first half of it: the way down and the mid block. Leaves the embedding of t in `pass.time`.
-    template <class Pass>
-    encoded_maps<Real> encode(Pass& pass, feature_maps<Real> const& z, Real t,
+    encoded_maps<Real> encode(forward_pass<Real>& pass, feature_maps<Real> const& z, Real t,
                               encoded_maps<Real> const* control = nullptr) const {
         auto encoded = encoder_(pass, z, t);
         if (control != nullptr) {
@@ -112,8 +109,7 @@ public:
     }
 
     /// The second half: the way up, from what the first half gave, with its `pass.time`.
-    template <class Pass>
-    feature_maps<Real> decode(Pass const& pass, encoded_maps<Real> encoded) const {
+    feature_maps<Real> decode(forward_pass<Real> const& pass, encoded_maps<Real> encoded) const {
         auto& skips = encoded.skips;
         auto h = std::move(encoded.middle);
         for (auto const& block : up_blocks_) {
@@ -129,8 +125,7 @@ public:
     }
 
 private:
-    template <class Pass>
-    static void add(Pass const& pass, feature_maps<Real>& to, feature_maps<Real> const& from) {
+    static void add(forward_pass<Real> const& pass, feature_maps<Real>& to, feature_maps<Real> const& from) {
         pass.each_frame([&](std::size_t i) { add_scaled(to[i], from[i]); });
     }
 

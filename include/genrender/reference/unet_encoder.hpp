@@ -53,8 +53,7 @@ public:
     }
 
     /// Goes on from the last of the skips and appends to them.
-    template <class Pass>
-    void operator()(Pass const& pass, std::vector<feature_maps<Real>>& skips) const {
+    void operator()(forward_pass<Real> const& pass, std::vector<feature_maps<Real>>& skips) const {
         for (std::size_t i = 0; i < resnets_.size(); ++i) {
             auto h = resnets_[i](pass, skips.back());
             if (!attentions_.empty()) {
@@ -92,8 +91,7 @@ public:
 
     /// Runs z [frames, tokens, in_channels] at time t; `hint` [frames, tokens, block_out_channels[0]], if there is one,
     /// is added after conv_in. Leaves the embedding of t in `pass.time`.
-    template <class Pass>
-    encoded_maps<Real> operator()(Pass& pass, feature_maps<Real> const& z, Real t,
+    encoded_maps<Real> operator()(forward_pass<Real>& pass, feature_maps<Real> const& z, Real t,
                                   std::vector<feature_maps<Real> const*> const& hint = {}) const {
         pass.time = time_(t);
         encoded_maps<Real> result;

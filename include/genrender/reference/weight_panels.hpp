@@ -98,9 +98,8 @@ public:
 
     /// Writes the product with the inputs of each token, and what is added to it, into `out` [tokens, outputs], whose
     /// rows are contiguous. Tokens are shared out over `loop`.
-    template <parallel_loop Loop = sequential_loop>
     void multiply(strided_view<Real, 2> out, token_inputs<Real> const& in, product_terms<Real> const& terms = {},
-                  Loop const& loop = Loop()) const {
+                  any_loop const& loop = {}) const {
         auto const tokens = out.extent(0);
         // The inputs of a chunk and one panel stay in the second cache while all panels pass over the chunk.
         constexpr std::size_t cached = std::size_t{1} << 17;

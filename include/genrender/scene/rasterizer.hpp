@@ -50,8 +50,8 @@ inline frame_guidance_view frame_view(rendered_guidance& guidance, frame_index i
 /// UV and depth maps, and rest positions if asked, of all frames of `scene` at `grid` pixels; each frame as
 /// rasterize_frame draws it. Frames run through `loop` and do not depend on its threads. Throws value_error at a grid
 /// without pixels, and as rasterize_frame does.
-template <animation Animation, parallel_loop Loop = sequential_loop>
-rendered_guidance rasterize(Animation const& scene, grid_extents grid, Loop const& loop = {},
+template <animation Animation>
+rendered_guidance rasterize(Animation const& scene, grid_extents grid, any_loop const& loop = {},
                             position_pass positions = position_pass::off) {
     require_value(grid.size() > 0, "rasterize", "grid", extents_text({grid.height, grid.width}), "at least one pixel");
     std::size_t const frames = scene.frame_count();
