@@ -22,6 +22,9 @@ target_compile_options(genrender_developer_flags INTERFACE
 if(GENRENDER_SANITIZERS)
     target_compile_options(genrender_developer_flags INTERFACE
         -fsanitize=${GENRENDER_SANITIZERS} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+    # A null pointer that is read ends a program in AddressSanitizer's report anyway, and checks of every reference are a
+    # tenth of the compile time.
+    target_compile_options(genrender_developer_flags INTERFACE -fno-sanitize=null)
     # Undefined behaviour inside other projects' headers is theirs, and looking for it there doubles the compile time.
     target_compile_options(genrender_developer_flags INTERFACE
         $<$<CXX_COMPILER_ID:Clang>:-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizer_ignorelist.txt>)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Writes TESTS_FILE: one add_test for every doctest case of EXECUTABLE, named `<suite> <test case>`. Run with cmake -P.
+# Writes TESTS_FILE: one add_test for every doctest case of EXECUTABLE, named `<suite> <test case>` and
+# labelled with the suite's room. Run with cmake -P.
 # (doctest's own discovery knows no suites, and splits its list at brackets that do not match, as in [0, 1).)
 execute_process(COMMAND ${EXECUTABLE} --list-test-cases --reporters=xml
     OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
@@ -20,18 +21,19 @@ while(listing MATCHES "<TestCase name=\"([^\"]*)\"( testsuite=\"([^\"]*)\")?")
         string(REPLACE "&apos;" "'" ${text} "${${text}}")
         string(REPLACE "&amp;" "&" ${text} "${${text}}")
     endforeach()
-    if(suite STREQUAL "")
-        message(FATAL_ERROR "tests/${ROOM}: '${name}' is in no TEST_SUITE(\"${ROOM}/<header>\")")
+    if(NOT suite MATCHES "^([a-z_]+)/")
+        message(FATAL_ERROR "${EXECUTABLE}: '${name}' is in no TEST_SUITE(\"<room>/<header>\")")
     endif()
+    set(room ${CMAKE_MATCH_1})
 
     # A comma would end the filter.
     string(REPLACE "," "\\," filter "${name}")
     string(APPEND commands
         "add_test([==[${suite} ${name}]==] [==[${EXECUTABLE}]==] [==[--test-suite=${suite}]==] [==[--test-case=${filter}]==])\n"
         # doctest is content when its filter matches nothing; we are not.
-        "set_tests_properties([==[${suite} ${name}]==] PROPERTIES LABELS ${ROOM} FAIL_REGULAR_EXPRESSION \"test cases: +0 \")\n")
+        "set_tests_properties([==[${suite} ${name}]==] PROPERTIES LABELS ${room} FAIL_REGULAR_EXPRESSION \"test cases: +0 \")\n")
 endwhile()
 if(commands STREQUAL "")
-    message(FATAL_ERROR "tests/${ROOM}: no test case")
+    message(FATAL_ERROR "${EXECUTABLE}: no test case")
 endif()
 file(WRITE ${TESTS_FILE} "${commands}")

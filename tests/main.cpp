@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The main function of the test executable of every room.
+// The main function of every test executable.
 #include <genrender/core/vector_target.hpp>
 
 #define DOCTEST_CONFIG_IMPLEMENT

@@ -19,77 +19,78 @@
 using namespace genrender;
 using genrender::testing::random_stack;
 
-namespace {
-
-template <class Real>
-using blocks_of = std::vector<key_value_view<Real>>;
-
-template <class Real>
-constexpr double tolerance = sizeof(Real) == 4 ? 2e-6 : 1e-14;
-
-/// Eq. 1 as it stands, in double precision: all logits of a query less the greatest, exponentials over their sum.
-template <class Real>
-stack<double, 2> naive(strided_view<Real const, 2> Q, blocks_of<Real> const& blocks, std::size_t heads) {
-    stack<double, 2> F({Q.extent(0), Q.extent(1)});
-    auto const d = Q.extent(1) / heads;
-    for (std::size_t q = 0; q < Q.extent(0); ++q) {
-        for (std::size_t h = 0; h < heads; ++h) {
-            std::vector<double> logits;
-            std::vector<double> counts;
-            for (auto const& block : blocks) {
-                for (std::size_t k = 0; k < block.K.extent(0); ++k) {
-                    counts.push_back(block.counts.extent(0) > 0 ? static_cast<double>(block.counts(k)) : 1);
-                    double product = 0;
-                    for (std::size_t c = h * d; c < (h + 1) * d; ++c) {
-                        product += static_cast<double>(Q(q, c)) * static_cast<double>(block.K(k, c));
-                    }
-                    logits.push_back(product / std::sqrt(static_cast<double>(d)));
-                }
-            }
-            auto const greatest = *std::max_element(logits.begin(), logits.end());
-            double sum = 0;
-            for (std::size_t k = 0; k < logits.size(); ++k) {
-                logits[k] = counts[k] * std::exp(logits[k] - greatest);
-                sum += logits[k];
-            }
-            std::size_t at = 0;
-            for (auto const& block : blocks) {
-                for (std::size_t k = 0; k < block.K.extent(0); ++k, ++at) {
-                    for (std::size_t c = h * d; c < (h + 1) * d; ++c) {
-                        F(q, c) += logits[at] / sum * static_cast<double>(block.V(k, c));
-                    }
-                }
-            }
-        }
-    }
-    return F;
-}
-
-template <class A, class B>
-double largest_difference(A const& a, B const& b) {
-    double largest = 0;
-    for (std::size_t t = 0; t < a.extent(0); ++t) {
-        for (std::size_t c = 0; c < a.extent(1); ++c) {
-            auto const difference = std::abs(static_cast<double>(a(t, c)) - static_cast<double>(b(t, c)));
-            // A NaN must not pass as small.
-            largest = std::isnan(difference) ? std::numeric_limits<double>::infinity() : std::max(largest, difference);
-        }
-    }
-    return largest;
-}
-
-template <class Real>
-stack<Real, 2> attention(stack<Real, 2> const& Q, blocks_of<Real> const& blocks, std::size_t heads) {
-    stack<Real, 2> F({Q.extent(0), Q.extent(1)});
-    // What stood in F before must not matter.
-    std::fill(F.data(), F.data() + F.size(), std::numeric_limits<Real>::quiet_NaN());
-    scaled_dot_product(F.view(), Q, blocks, heads);
-    return F;
-}
-
-} // namespace
-
 TEST_SUITE("attention/scaled_dot_product") {
+    namespace {
+
+    template <class Real>
+    using blocks_of = std::vector<key_value_view<Real>>;
+
+    template <class Real>
+    constexpr double tolerance = sizeof(Real) == 4 ? 2e-6 : 1e-14;
+
+    /// Eq. 1 as it stands, in double precision: all logits of a query less the greatest, exponentials over their sum.
+    template <class Real>
+    stack<double, 2> naive(strided_view<Real const, 2> Q, blocks_of<Real> const& blocks, std::size_t heads) {
+        stack<double, 2> F({Q.extent(0), Q.extent(1)});
+        auto const d = Q.extent(1) / heads;
+        for (std::size_t q = 0; q < Q.extent(0); ++q) {
+            for (std::size_t h = 0; h < heads; ++h) {
+                std::vector<double> logits;
+                std::vector<double> counts;
+                for (auto const& block : blocks) {
+                    for (std::size_t k = 0; k < block.K.extent(0); ++k) {
+                        counts.push_back(block.counts.extent(0) > 0 ? static_cast<double>(block.counts(k)) : 1);
+                        double product = 0;
+                        for (std::size_t c = h * d; c < (h + 1) * d; ++c) {
+                            product += static_cast<double>(Q(q, c)) * static_cast<double>(block.K(k, c));
+                        }
+                        logits.push_back(product / std::sqrt(static_cast<double>(d)));
+                    }
+                }
+                auto const greatest = *std::max_element(logits.begin(), logits.end());
+                double sum = 0;
+                for (std::size_t k = 0; k < logits.size(); ++k) {
+                    logits[k] = counts[k] * std::exp(logits[k] - greatest);
+                    sum += logits[k];
+                }
+                std::size_t at = 0;
+                for (auto const& block : blocks) {
+                    for (std::size_t k = 0; k < block.K.extent(0); ++k, ++at) {
+                        for (std::size_t c = h * d; c < (h + 1) * d; ++c) {
+                            F(q, c) += logits[at] / sum * static_cast<double>(block.V(k, c));
+                        }
+                    }
+                }
+            }
+        }
+        return F;
+    }
+
+    template <class A, class B>
+    double largest_difference(A const& a, B const& b) {
+        double largest = 0;
+        for (std::size_t t = 0; t < a.extent(0); ++t) {
+            for (std::size_t c = 0; c < a.extent(1); ++c) {
+                auto const difference = std::abs(static_cast<double>(a(t, c)) - static_cast<double>(b(t, c)));
+                // A NaN must not pass as small.
+                largest =
+                    std::isnan(difference) ? std::numeric_limits<double>::infinity() : std::max(largest, difference);
+            }
+        }
+        return largest;
+    }
+
+    template <class Real>
+    stack<Real, 2> attention(stack<Real, 2> const& Q, blocks_of<Real> const& blocks, std::size_t heads) {
+        stack<Real, 2> F({Q.extent(0), Q.extent(1)});
+        // What stood in F before must not matter.
+        std::fill(F.data(), F.data() + F.size(), std::numeric_limits<Real>::quiet_NaN());
+        scaled_dot_product(F.view(), Q, blocks, heads);
+        return F;
+    }
+
+    } // namespace
+
     TEST_CASE_TEMPLATE("[GR eq. 1] two tokens by hand", Real, float, double) {
         // Logits ln 3 and 0 weigh V = 4 and 8 by 3/4 and 1/4; logits 0 and 0 by halves.
         stack<Real, 2> Q({2, 1});

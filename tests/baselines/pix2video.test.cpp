@@ -17,30 +17,30 @@
 using namespace genrender;
 using namespace genrender::testing;
 
-namespace {
-
-/// All frames in lockstep, each attending to frames 0 and i - 1 really joined.
-template <class Real>
-stack<Real, 4> plain_pix2video(layered_denoiser<Real> const& phi, strided_view<Real const, 4> z, Real sigma) {
-    return plain_evaluation<Real>(phi, z, sigma,
-                                  [&](attention_place place, host_features<Real> const& f, std::size_t i) {
-                                      return dense_self_attention(phi.weights[place.site.value], joined_rows(f, {i}),
-                                                                  joined_rows(f, {0, i > 0 ? i - 1 : 0}));
-                                  });
-}
-
-/// A denoiser that forgets its processor.
-struct deaf : analytic_denoiser<double> {
-    template <class Processor>
-    void operator()(strided_view<double, 4> x0, strided_view<double const, 4> z, double, std::span<frame_index const>,
-                    Processor&) const {
-        copy(x0, in_view<double, 4>(z));
-    }
-};
-
-} // namespace
-
 TEST_SUITE("baselines/pix2video") {
+    namespace {
+
+    /// All frames in lockstep, each attending to frames 0 and i - 1 really joined.
+    template <class Real>
+    stack<Real, 4> plain_pix2video(layered_denoiser<Real> const& phi, strided_view<Real const, 4> z, Real sigma) {
+        return plain_evaluation<Real>(
+            phi, z, sigma, [&](attention_place place, host_features<Real> const& f, std::size_t i) {
+                return dense_self_attention(phi.weights[place.site.value], joined_rows(f, {i}),
+                                            joined_rows(f, {0, i > 0 ? i - 1 : 0}));
+            });
+    }
+
+    /// A denoiser that forgets its processor.
+    struct deaf : analytic_denoiser<double> {
+        template <class Processor>
+        void operator()(strided_view<double, 4> x0, strided_view<double const, 4> z, double,
+                        std::span<frame_index const>, Processor&) const {
+            copy(x0, in_view<double, 4>(z));
+        }
+    };
+
+    } // namespace
+
     TEST_CASE_TEMPLATE("[GR sec. 4: Pix2Video*] an evaluation equals the plainly written method", Real, float, double) {
         for (auto const frames : {1, 2, 3, 6}) {
             small_baseline_run<Real> run(static_cast<std::size_t>(frames));

@@ -13,61 +13,61 @@
 
 using namespace genrender;
 
-namespace {
-
-using block = std::array<std::uint32_t, 4>;
-
-constexpr std::uint32_t ones = 0xFFFFFFFFU;
-
-/// Mean, variance, and the third and fourth standardised moments of normal values along one coordinate of the address.
-struct moments {
-    double mean = 0;
-    double variance = 0;
-    double skewness = 0;
-    double kurtosis = 0;
-};
-
-template <class Value>
-moments moments_of(std::uint32_t count, Value const& value) {
-    moments m;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        m.mean += value(i) / count;
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        auto const d = value(i) - m.mean;
-        m.variance += d * d / count;
-        m.skewness += d * d * d / count;
-        m.kurtosis += d * d * d * d / count;
-    }
-    m.skewness /= std::pow(m.variance, 1.5);
-    m.kurtosis /= m.variance * m.variance;
-    return m;
-}
-
-template <class First, class Second>
-double correlation(std::uint32_t count, First const& first, Second const& second) {
-    double product = 0;
-    double squares_1 = 0;
-    double squares_2 = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        product += first(i) * second(i);
-        squares_1 += first(i) * first(i);
-        squares_2 += second(i) * second(i);
-    }
-    return product / std::sqrt(squares_1 * squares_2);
-}
-
-/// What both the header and this test should make of bits by the textbook: 53 bits of a fraction and Box-Muller.
-double box_muller(block const& bits) {
-    auto const fraction = std::ldexp(static_cast<double>(bits[0]), -32) +
-                          std::ldexp(static_cast<double>(bits[1] >> 11), -53) + std::ldexp(1.0, -54);
-    auto const turn = std::ldexp(static_cast<double>(bits[2]) + 0.5, -32);
-    return std::sqrt(-2 * std::log(fraction)) * std::cos(2 * std::numbers::pi * turn);
-}
-
-} // namespace
-
 TEST_SUITE("core/random") {
+    namespace {
+
+    using block = std::array<std::uint32_t, 4>;
+
+    constexpr std::uint32_t ones = 0xFFFFFFFFU;
+
+    /// Mean, variance, and the third and fourth standardised moments of normal values along one coordinate of the address.
+    struct moments {
+        double mean = 0;
+        double variance = 0;
+        double skewness = 0;
+        double kurtosis = 0;
+    };
+
+    template <class Value>
+    moments moments_of(std::uint32_t count, Value const& value) {
+        moments m;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            m.mean += value(i) / count;
+        }
+        for (std::uint32_t i = 0; i < count; ++i) {
+            auto const d = value(i) - m.mean;
+            m.variance += d * d / count;
+            m.skewness += d * d * d / count;
+            m.kurtosis += d * d * d * d / count;
+        }
+        m.skewness /= std::pow(m.variance, 1.5);
+        m.kurtosis /= m.variance * m.variance;
+        return m;
+    }
+
+    template <class First, class Second>
+    double correlation(std::uint32_t count, First const& first, Second const& second) {
+        double product = 0;
+        double squares_1 = 0;
+        double squares_2 = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            product += first(i) * second(i);
+            squares_1 += first(i) * first(i);
+            squares_2 += second(i) * second(i);
+        }
+        return product / std::sqrt(squares_1 * squares_2);
+    }
+
+    /// What both the header and this test should make of bits by the textbook: 53 bits of a fraction and Box-Muller.
+    double box_muller(block const& bits) {
+        auto const fraction = std::ldexp(static_cast<double>(bits[0]), -32) +
+                              std::ldexp(static_cast<double>(bits[1] >> 11), -53) + std::ldexp(1.0, -54);
+        auto const turn = std::ldexp(static_cast<double>(bits[2]) + 0.5, -32);
+        return std::sqrt(-2 * std::log(fraction)) * std::cos(2 * std::numbers::pi * turn);
+    }
+
+    } // namespace
+
     TEST_CASE("Philox4x32-10 gives the known answers that its authors publish") {
         CHECK(philox({0, 0, 0, 0}, {0, 0}) == block{0x6627E8D5, 0xE169C58D, 0xBC57AC4C, 0x9B00DBD8});
         CHECK(philox({ones, ones, ones, ones}, {ones, ones}) == block{0x408F276D, 0x41C83B0E, 0xA20BC7C6, 0x6D5451FD});

@@ -21,110 +21,111 @@
 using namespace genrender;
 using genrender::testing::random_scene;
 
-namespace {
+TEST_SUITE("noise/initial_noise") {
+    namespace {
 
-template <class Real = double>
-stack<Real, 4> noise_of(uv_maps const& maps, std::size_t channels, grid_extents grid,
-                        std::vector<frame_index> const& frames, noise_settings const& settings,
-                        any_loop const& loop = {}) {
-    stack<Real, 4> z({frames.size(), channels, grid.height, grid.width});
-    std::fill(z.data(), z.data() + z.size(), std::numeric_limits<Real>::quiet_NaN());
-    initial_noise(z.view(), to_uv_view(maps), frames, settings, loop);
-    return z;
-}
-
-/// Settings of the paper's own reading of noise textures.
-noise_settings by_texel(noise_kind kind, background_noise background, std::size_t T, std::uint64_t seed) {
-    return {kind, background, T, seed, noise_reading::nearest_texel, {}};
-}
-
-std::vector<frame_index> all_frames(uv_maps const& maps) {
-    std::vector<frame_index> frames;
-    for (std::uint32_t i = 0; i < maps.frame_count(); ++i) {
-        frames.push_back({i});
+    template <class Real = double>
+    stack<Real, 4> noise_of(uv_maps const& maps, std::size_t channels, grid_extents grid,
+                            std::vector<frame_index> const& frames, noise_settings const& settings,
+                            any_loop const& loop = {}) {
+        stack<Real, 4> z({frames.size(), channels, grid.height, grid.width});
+        std::fill(z.data(), z.data() + z.size(), std::numeric_limits<Real>::quiet_NaN());
+        initial_noise(z.view(), to_uv_view(maps), frames, settings, loop);
+        return z;
     }
-    return frames;
-}
 
-/// One object that fills the frame and moves right by `step` pixels a frame; a pixel is a texel of its texture.
-uv_maps sliding_plane(std::size_t frames, grid_extents grid, std::size_t step, std::size_t T, std::uint32_t object) {
-    uv_maps maps(frames, grid);
-    for (std::size_t i = 0; i < frames; ++i) {
-        for (std::size_t row = 0; row < grid.height; ++row) {
-            for (std::size_t column = 0; column < grid.width; ++column) {
-                auto const texel_column = (column + T - step * i) % T;
-                maps.uv(i, row, column, 0) = (static_cast<float>(texel_column) + 0.5F) / static_cast<float>(T);
-                maps.uv(i, row, column, 1) = (static_cast<float>(row) + 0.5F) / static_cast<float>(T);
-                maps.object(i, row, column) = object;
-                maps.coverage(i, row, column) = 1;
+    /// Settings of the paper's own reading of noise textures.
+    noise_settings by_texel(noise_kind kind, background_noise background, std::size_t T, std::uint64_t seed) {
+        return {kind, background, T, seed, noise_reading::nearest_texel, {}};
+    }
+
+    std::vector<frame_index> all_frames(uv_maps const& maps) {
+        std::vector<frame_index> frames;
+        for (std::uint32_t i = 0; i < maps.frame_count(); ++i) {
+            frames.push_back({i});
+        }
+        return frames;
+    }
+
+    /// One object that fills the frame and moves right by `step` pixels a frame; a pixel is a texel of its texture.
+    uv_maps sliding_plane(std::size_t frames, grid_extents grid, std::size_t step, std::size_t T,
+                          std::uint32_t object) {
+        uv_maps maps(frames, grid);
+        for (std::size_t i = 0; i < frames; ++i) {
+            for (std::size_t row = 0; row < grid.height; ++row) {
+                for (std::size_t column = 0; column < grid.width; ++column) {
+                    auto const texel_column = (column + T - step * i) % T;
+                    maps.uv(i, row, column, 0) = (static_cast<float>(texel_column) + 0.5F) / static_cast<float>(T);
+                    maps.uv(i, row, column, 1) = (static_cast<float>(row) + 0.5F) / static_cast<float>(T);
+                    maps.object(i, row, column) = object;
+                    maps.coverage(i, row, column) = 1;
+                }
             }
         }
+        return maps;
     }
-    return maps;
-}
 
-struct moments {
-    double mean = 0;
-    double variance = 0;
-    double kurtosis = 0;
-};
+    struct moments {
+        double mean = 0;
+        double variance = 0;
+        double kurtosis = 0;
+    };
 
-template <class Real>
-moments moments_of(stack<Real, 4> const& z) {
-    moments m;
-    auto const n = static_cast<double>(z.size());
-    for (std::size_t e = 0; e < z.size(); ++e) {
-        m.mean += static_cast<double>(z.data()[e]) / n;
-    }
-    for (std::size_t e = 0; e < z.size(); ++e) {
-        auto const d = static_cast<double>(z.data()[e]) - m.mean;
-        m.variance += d * d / n;
-        m.kurtosis += d * d * d * d / n;
-    }
-    m.kurtosis /= m.variance * m.variance;
-    return m;
-}
-
-/// Correlation of all pairs of pixels of frames 0 and `other` that show the same surface point, over all channels.
-struct paired {
-    double correlation = 0;
-    std::size_t pairs = 0;
-};
-
-paired correlation_along(uv_maps const& maps, stack<double, 4> const& z, std::uint32_t other) {
-    grid_extents const grid{z.extent(2), z.extent(3)};
-    texel_grid const map(to_uv_view(maps), grid);
-    double product = 0;
-    double squares_1 = 0;
-    double squares_2 = 0;
-    paired result;
-    for (std::uint32_t t = 0; t < grid.size(); ++t) {
-        auto const point = map.point_at({other}, {t});
-        auto const source = point ? map.token_at({0}, *point) : std::nullopt;
-        if (!source) {
-            continue;
+    template <class Real>
+    moments moments_of(stack<Real, 4> const& z) {
+        moments m;
+        auto const n = static_cast<double>(z.size());
+        for (std::size_t e = 0; e < z.size(); ++e) {
+            m.mean += static_cast<double>(z.data()[e]) / n;
         }
-        ++result.pairs;
-        for (std::size_t c = 0; c < z.extent(1); ++c) {
-            auto const a = z(std::size_t{0}, c, source->value / grid.width, source->value % grid.width);
-            auto const b = z(std::size_t{other}, c, t / grid.width, t % grid.width);
-            product += a * b;
-            squares_1 += a * a;
-            squares_2 += b * b;
+        for (std::size_t e = 0; e < z.size(); ++e) {
+            auto const d = static_cast<double>(z.data()[e]) - m.mean;
+            m.variance += d * d / n;
+            m.kurtosis += d * d * d * d / n;
         }
+        m.kurtosis /= m.variance * m.variance;
+        return m;
     }
-    result.correlation = product / std::sqrt(squares_1 * squares_2);
-    return result;
-}
 
-template <class Real>
-bool equal_bits(stack<Real, 4> const& a, stack<Real, 4> const& b) {
-    return a.extents() == b.extents() && std::equal(a.data(), a.data() + a.size(), b.data());
-}
+    /// Correlation of all pairs of pixels of frames 0 and `other` that show the same surface point, over all channels.
+    struct paired {
+        double correlation = 0;
+        std::size_t pairs = 0;
+    };
 
-} // namespace
+    paired correlation_along(uv_maps const& maps, stack<double, 4> const& z, std::uint32_t other) {
+        grid_extents const grid{z.extent(2), z.extent(3)};
+        texel_grid const map(to_uv_view(maps), grid);
+        double product = 0;
+        double squares_1 = 0;
+        double squares_2 = 0;
+        paired result;
+        for (std::uint32_t t = 0; t < grid.size(); ++t) {
+            auto const point = map.point_at({other}, {t});
+            auto const source = point ? map.token_at({0}, *point) : std::nullopt;
+            if (!source) {
+                continue;
+            }
+            ++result.pairs;
+            for (std::size_t c = 0; c < z.extent(1); ++c) {
+                auto const a = z(std::size_t{0}, c, source->value / grid.width, source->value % grid.width);
+                auto const b = z(std::size_t{other}, c, t / grid.width, t % grid.width);
+                product += a * b;
+                squares_1 += a * a;
+                squares_2 += b * b;
+            }
+        }
+        result.correlation = product / std::sqrt(squares_1 * squares_2);
+        return result;
+    }
 
-TEST_SUITE("noise/initial_noise") {
+    template <class Real>
+    bool equal_bits(stack<Real, 4> const& a, stack<Real, 4> const& b) {
+        return a.extents() == b.extents() && std::equal(a.data(), a.data() + a.size(), b.data());
+    }
+
+    } // namespace
+
     TEST_CASE_TEMPLATE("[GR sec. 3.3] noise is N(0; 1) in every frame and of every kind", Real, float, double) {
         auto const maps = random_scene(3, 3, {64, 64}, 3);
         for (auto const kind : {noise_kind::uv, noise_kind::fixed, noise_kind::independent}) {

@@ -21,103 +21,103 @@
 using namespace genrender;
 using genrender::testing::random_scene;
 
-namespace {
+TEST_SUITE("noise/surface_noise") {
+    namespace {
 
-constexpr grid_extents pixels{64, 64};
-constexpr grid_extents grid{16, 16};
+    constexpr grid_extents pixels{64, 64};
+    constexpr grid_extents grid{16, 16};
 
-/// A frame that shows one object from (u, v) at its upper left corner, `zoom` times smaller than a texture a frame.
-uv_maps view_of_plane(double u, double v, double zoom, double shear = 0) {
-    uv_maps maps(1, pixels);
-    for (std::size_t row = 0; row < pixels.height; ++row) {
-        for (std::size_t column = 0; column < pixels.width; ++column) {
-            auto const y = (static_cast<double>(row) + 0.5) / 64;
-            auto const x = (static_cast<double>(column) + 0.5) / 64;
-            maps.uv(0, row, column, 0) = static_cast<float>(u + zoom * (x + shear * y));
-            maps.uv(0, row, column, 1) = static_cast<float>(v + zoom * y);
-            maps.object(0, row, column) = 3;
-            maps.coverage(0, row, column) = 1;
-        }
-    }
-    return maps;
-}
-
-template <class Settings = noise_settings>
-stack<double, 4> noise_of(uv_maps const& maps, std::size_t channels, Settings const& settings = {},
-                          std::vector<frame_index> const& frames = {{0}}) {
-    stack<double, 4> z({frames.size(), channels, grid.height, grid.width});
-    initial_noise(z.view(), to_uv_view(maps), frames, settings);
-    return z;
-}
-
-noise_settings by_texel(std::size_t T) { return {noise_kind::uv, {}, T, 0, noise_reading::nearest_texel, {}}; }
-
-/// How noise departs from white noise of N(0, 1).
-struct departures {
-    double mean = 0;
-    double variance = 0;   ///< minus 1
-    double kurtosis = 0;   ///< minus 3
-    double beside = 0;     ///< correlation of neighbours in a row
-    double below = 0;      ///< correlation of neighbours in a column
-    double kolmogorov = 0; ///< greatest distance of the distribution function from that of N(0, 1)
-};
-
-departures departures_of(stack<double, 4> const& z) {
-    departures d;
-    std::vector<double> values(z.data(), z.data() + z.size());
-    auto const n = static_cast<double>(values.size());
-    double squares = 0;
-    double fourths = 0;
-    for (auto const value : values) {
-        d.mean += value / n;
-        squares += value * value / n;
-        fourths += value * value * value * value / n;
-    }
-    d.variance = squares - 1;
-    d.kurtosis = fourths / (squares * squares) - 3;
-    auto const pairs = static_cast<double>(z.extent(1) * 16 * 15);
-    for (std::size_t c = 0; c < z.extent(1); ++c) {
-        for (std::size_t a = 0; a < 16; ++a) {
-            for (std::size_t b = 0; b + 1 < 16; ++b) {
-                d.beside += z(std::size_t{0}, c, a, b) * z(std::size_t{0}, c, a, b + 1) / pairs;
-                d.below += z(std::size_t{0}, c, b, a) * z(std::size_t{0}, c, b + 1, a) / pairs;
+    /// A frame that shows one object from (u, v) at its upper left corner, `zoom` times smaller than a texture a frame.
+    uv_maps view_of_plane(double u, double v, double zoom, double shear = 0) {
+        uv_maps maps(1, pixels);
+        for (std::size_t row = 0; row < pixels.height; ++row) {
+            for (std::size_t column = 0; column < pixels.width; ++column) {
+                auto const y = (static_cast<double>(row) + 0.5) / 64;
+                auto const x = (static_cast<double>(column) + 0.5) / 64;
+                maps.uv(0, row, column, 0) = static_cast<float>(u + zoom * (x + shear * y));
+                maps.uv(0, row, column, 1) = static_cast<float>(v + zoom * y);
+                maps.object(0, row, column) = 3;
+                maps.coverage(0, row, column) = 1;
             }
         }
+        return maps;
     }
-    std::sort(values.begin(), values.end());
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        auto const expected = 0.5 * std::erfc(-values[k] / std::sqrt(2.0));
-        d.kolmogorov = std::max({d.kolmogorov, std::abs(expected - static_cast<double>(k) / n),
-                                 std::abs(expected - static_cast<double>(k + 1) / n)});
-    }
-    return d;
-}
 
-/// Mean product of two frames' values at two latent pixels over all channels.
-double correlation(stack<double, 4> const& a, pixel p, stack<double, 4> const& b, pixel q) {
-    double sum = 0;
-    for (std::size_t c = 0; c < a.extent(1); ++c) {
-        sum += a(std::size_t{0}, c, p.row, p.column) * b(std::size_t{0}, c, q.row, q.column);
+    template <class Settings = noise_settings>
+    stack<double, 4> noise_of(uv_maps const& maps, std::size_t channels, Settings const& settings = {},
+                              std::vector<frame_index> const& frames = {{0}}) {
+        stack<double, 4> z({frames.size(), channels, grid.height, grid.width});
+        initial_noise(z.view(), to_uv_view(maps), frames, settings);
+        return z;
     }
-    return sum / static_cast<double>(a.extent(1));
-}
 
-/// The same, averaged over all latent pixels and their neighbours `right` of them in the other frame.
-double correlation_beside(stack<double, 4> const& a, stack<double, 4> const& b, std::uint32_t right) {
-    double sum = 0;
-    std::size_t count = 0;
-    for (std::uint32_t row = 0; row < 16; ++row) {
-        for (std::uint32_t column = 0; column + right < 16; ++column) {
-            sum += correlation(a, {row, column + right}, b, {row, column});
-            ++count;
+    noise_settings by_texel(std::size_t T) { return {noise_kind::uv, {}, T, 0, noise_reading::nearest_texel, {}}; }
+
+    /// How noise departs from white noise of N(0, 1).
+    struct departures {
+        double mean = 0;
+        double variance = 0;   ///< minus 1
+        double kurtosis = 0;   ///< minus 3
+        double beside = 0;     ///< correlation of neighbours in a row
+        double below = 0;      ///< correlation of neighbours in a column
+        double kolmogorov = 0; ///< greatest distance of the distribution function from that of N(0, 1)
+    };
+
+    departures departures_of(stack<double, 4> const& z) {
+        departures d;
+        std::vector<double> values(z.data(), z.data() + z.size());
+        auto const n = static_cast<double>(values.size());
+        double squares = 0;
+        double fourths = 0;
+        for (auto const value : values) {
+            d.mean += value / n;
+            squares += value * value / n;
+            fourths += value * value * value * value / n;
         }
+        d.variance = squares - 1;
+        d.kurtosis = fourths / (squares * squares) - 3;
+        auto const pairs = static_cast<double>(z.extent(1) * 16 * 15);
+        for (std::size_t c = 0; c < z.extent(1); ++c) {
+            for (std::size_t a = 0; a < 16; ++a) {
+                for (std::size_t b = 0; b + 1 < 16; ++b) {
+                    d.beside += z(std::size_t{0}, c, a, b) * z(std::size_t{0}, c, a, b + 1) / pairs;
+                    d.below += z(std::size_t{0}, c, b, a) * z(std::size_t{0}, c, b + 1, a) / pairs;
+                }
+            }
+        }
+        std::sort(values.begin(), values.end());
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            auto const expected = 0.5 * std::erfc(-values[k] / std::sqrt(2.0));
+            d.kolmogorov = std::max({d.kolmogorov, std::abs(expected - static_cast<double>(k) / n),
+                                     std::abs(expected - static_cast<double>(k + 1) / n)});
+        }
+        return d;
     }
-    return sum / static_cast<double>(count);
-}
 
-} // namespace
+    /// Mean product of two frames' values at two latent pixels over all channels.
+    double correlation(stack<double, 4> const& a, pixel p, stack<double, 4> const& b, pixel q) {
+        double sum = 0;
+        for (std::size_t c = 0; c < a.extent(1); ++c) {
+            sum += a(std::size_t{0}, c, p.row, p.column) * b(std::size_t{0}, c, q.row, q.column);
+        }
+        return sum / static_cast<double>(a.extent(1));
+    }
 
-TEST_SUITE("noise/surface_noise") {
+    /// The same, averaged over all latent pixels and their neighbours `right` of them in the other frame.
+    double correlation_beside(stack<double, 4> const& a, stack<double, 4> const& b, std::uint32_t right) {
+        double sum = 0;
+        std::size_t count = 0;
+        for (std::uint32_t row = 0; row < 16; ++row) {
+            for (std::uint32_t column = 0; column + right < 16; ++column) {
+                sum += correlation(a, {row, column + right}, b, {row, column});
+                ++count;
+            }
+        }
+        return sum / static_cast<double>(count);
+    }
+
+    } // namespace
+
     TEST_CASE("[GR sec. 3.3] every frame is white noise of N(0; 1) at any zoom and shear") {
         constexpr std::size_t channels = 256; // 65536 values: four standard errors, and Kolmogorov's 0.01 % point
         for (auto const zoom : {0.013, 0.25, 0.5, 1.0, 2.0, 4.0, 300.0}) {

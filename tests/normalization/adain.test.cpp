@@ -19,68 +19,68 @@
 using namespace genrender;
 using genrender::testing::random_stack;
 
-namespace {
+TEST_SUITE("normalization/adain") {
+    namespace {
 
-constexpr std::size_t frames = 4;
-constexpr std::size_t channels = 3;
-constexpr grid_extents grid{6, 8};
+    constexpr std::size_t frames = 4;
+    constexpr std::size_t channels = 3;
+    constexpr grid_extents grid{6, 8};
 
-using mask_stack = stack<std::uint8_t, 3>;
+    using mask_stack = stack<std::uint8_t, 3>;
 
-/// Frames of different means and deviations, and another background in each: all but a block of columns that moves.
-template <class Real>
-std::pair<stack<Real, 4>, mask_stack> world() {
-    auto z = random_stack<Real, 4>({frames, channels, grid.height, grid.width}, 3);
-    mask_stack background({frames, grid.height, grid.width});
-    for (std::size_t i = 0; i < frames; ++i) {
-        for (std::size_t row = 0; row < grid.height; ++row) {
-            for (std::size_t column = 0; column < grid.width; ++column) {
-                background(i, row, column) = column < i || column >= i + 4 ? 1 : 0;
-                for (std::size_t c = 0; c < channels; ++c) {
-                    auto& value = z(i, c, row, column);
-                    value = static_cast<Real>(0.5 + static_cast<double>(i + c)) * value + static_cast<Real>(3 * i) -
-                            static_cast<Real>(c);
+    /// Frames of different means and deviations, and another background in each: all but a block of columns that moves.
+    template <class Real>
+    std::pair<stack<Real, 4>, mask_stack> world() {
+        auto z = random_stack<Real, 4>({frames, channels, grid.height, grid.width}, 3);
+        mask_stack background({frames, grid.height, grid.width});
+        for (std::size_t i = 0; i < frames; ++i) {
+            for (std::size_t row = 0; row < grid.height; ++row) {
+                for (std::size_t column = 0; column < grid.width; ++column) {
+                    background(i, row, column) = column < i || column >= i + 4 ? 1 : 0;
+                    for (std::size_t c = 0; c < channels; ++c) {
+                        auto& value = z(i, c, row, column);
+                        value = static_cast<Real>(0.5 + static_cast<double>(i + c)) * value + static_cast<Real>(3 * i) -
+                                static_cast<Real>(c);
+                    }
                 }
             }
         }
+        return {std::move(z), std::move(background)};
     }
-    return {std::move(z), std::move(background)};
-}
 
-template <class Real>
-channel_statistics<Real> background_of(stack<Real, 4> const& z, mask_stack const& background, std::size_t i) {
-    return masked_statistics(z.view()[i], background.view()[i], Real{0});
-}
-
-template <class Real>
-double largest_difference(stack<Real, 4> const& a, stack<Real, 4> const& b) {
-    double largest = 0;
-    for (std::size_t e = 0; e < a.size(); ++e) {
-        auto const difference = std::abs(static_cast<double>(a.data()[e]) - static_cast<double>(b.data()[e]));
-        // A NaN must not pass as small.
-        largest = std::isnan(difference) ? std::numeric_limits<double>::infinity() : std::max(largest, difference);
+    template <class Real>
+    channel_statistics<Real> background_of(stack<Real, 4> const& z, mask_stack const& background, std::size_t i) {
+        return masked_statistics(z.view()[i], background.view()[i], Real{0});
     }
-    return largest;
-}
 
-template <class Real>
-bool frame_is_equal(stack<Real, 4> const& a, stack<Real, 4> const& b, std::size_t i) {
-    auto const size = a.size() / a.extent(0);
-    return std::equal(a.data() + i * size, a.data() + (i + 1) * size, b.data() + i * size);
-}
+    template <class Real>
+    double largest_difference(stack<Real, 4> const& a, stack<Real, 4> const& b) {
+        double largest = 0;
+        for (std::size_t e = 0; e < a.size(); ++e) {
+            auto const difference = std::abs(static_cast<double>(a.data()[e]) - static_cast<double>(b.data()[e]));
+            // A NaN must not pass as small.
+            largest = std::isnan(difference) ? std::numeric_limits<double>::infinity() : std::max(largest, difference);
+        }
+        return largest;
+    }
 
-template <class Real>
-bool is_finite(stack<Real, 4> const& z) {
-    return std::all_of(z.data(), z.data() + z.size(), [](Real value) { return std::isfinite(value); });
-}
+    template <class Real>
+    bool frame_is_equal(stack<Real, 4> const& a, stack<Real, 4> const& b, std::size_t i) {
+        auto const size = a.size() / a.extent(0);
+        return std::equal(a.data() + i * size, a.data() + (i + 1) * size, b.data() + i * size);
+    }
 
-void fill(mask_stack& background, std::size_t i, std::uint8_t value) {
-    std::fill(background.data() + i * grid.size(), background.data() + (i + 1) * grid.size(), value);
-}
+    template <class Real>
+    bool is_finite(stack<Real, 4> const& z) {
+        return std::all_of(z.data(), z.data() + z.size(), [](Real value) { return std::isfinite(value); });
+    }
 
-} // namespace
+    void fill(mask_stack& background, std::size_t i, std::uint8_t value) {
+        std::fill(background.data() + i * grid.size(), background.data() + (i + 1) * grid.size(), value);
+    }
 
-TEST_SUITE("normalization/adain") {
+    } // namespace
+
     TEST_CASE_TEMPLATE("[GR sec. 3.4] AdaIN by hand", Real, float, double) {
         stack<Real, 3> z({2, 1, 2});
         z(0, 0, 0) = 1;

@@ -19,39 +19,39 @@
 
 using namespace genrender;
 
-namespace {
-
-testing::analytic_denoiser<double> with_attention() { return {.grid = {8, 8}, .attention = 0.5}; }
-
-uv_maps const& scene() {
-    static auto const maps = testing::random_scene(33, 6, {32, 32}, 3);
-    return maps;
-}
-
-render_settings<double> few_steps() {
-    render_settings<double> settings;
-    settings.steps = 4;
-    settings.keyframes.count = 3;
-    return settings;
-}
-
-template <class Phi>
-latents<double> run(Phi const& phi, render_settings<double> const& settings, std::size_t threads = 1) {
-    render_report report;
-    return render(phi, to_uv_view(scene()), settings, report, {}, threaded_loop(threads));
-}
-
-double difference(latents<double> const& a, latents<double> const& b) {
-    double worst = 0;
-    for (std::size_t e = 0; e < a.size(); ++e) {
-        worst = std::max(worst, std::abs(a.data()[e] - b.data()[e]));
-    }
-    return worst;
-}
-
-} // namespace
-
 TEST_SUITE("pipeline/render") {
+    namespace {
+
+    testing::analytic_denoiser<double> with_attention() { return {.grid = {8, 8}, .attention = 0.5}; }
+
+    uv_maps const& scene() {
+        static auto const maps = testing::random_scene(33, 6, {32, 32}, 3);
+        return maps;
+    }
+
+    render_settings<double> few_steps() {
+        render_settings<double> settings;
+        settings.steps = 4;
+        settings.keyframes.count = 3;
+        return settings;
+    }
+
+    template <class Phi>
+    latents<double> run(Phi const& phi, render_settings<double> const& settings, std::size_t threads = 1) {
+        render_report report;
+        return render(phi, to_uv_view(scene()), settings, report, {}, threaded_loop(threads));
+    }
+
+    double difference(latents<double> const& a, latents<double> const& b) {
+        double worst = 0;
+        for (std::size_t e = 0; e < a.size(); ++e) {
+            worst = std::max(worst, std::abs(a.data()[e] - b.data()[e]));
+        }
+        return worst;
+    }
+
+    } // namespace
+
     TEST_CASE_TEMPLATE("[GR alg. 1] with a denoiser of known answer every sampler reaches it", Real, float, double) {
         testing::analytic_denoiser<Real> const phi{.grid = {8, 8}}; // no attention: the exact posterior
         render_settings<Real> settings;

@@ -17,66 +17,66 @@
 
 using namespace genrender;
 
-namespace {
-
-/// A scene of six frames on 8 x 8 latents with everything a sequence denoiser refers to.
-template <class Real>
-struct small_run {
-    static constexpr std::size_t objects = 3;
-    static constexpr std::size_t T = 12;
-    uv_maps maps = testing::random_scene(21, 6, {32, 32}, objects);
-    testing::analytic_denoiser<Real> phi{.grid = {8, 8}, .attention = Real(0.6), .guidance_branches = 2};
-    render_settings<Real> settings;
-    std::vector<Real> sigmas{8, 3, 1, 0};
-    tensor<std::uint8_t, 3> background = background_mask(to_uv_view(maps), phi.grid);
-    correspondence_set<texel_grid> grids;
-    sequential_loop loop;
-    progress_meter meter{3, 1000, {}};
-    render_report report;
-
-    small_run() {
-        settings.steps = 3;
-        settings.keyframes.count = 3;
-        settings.normalization.enabled = false;
-        grids.add(phi.grid, [&](grid_extents grid) { return texel_grid(to_uv_view(maps), grid, {.T = T}); });
-    }
-
-    latents<Real> noise() const {
-        auto z = latents<Real>::from_shape({6, 3, 8, 8});
-        for (std::size_t e = 0; e < z.size(); ++e) {
-            z.data()[e] =
-                static_cast<Real>(normal_value(5, random_stream::test, {static_cast<std::uint32_t>(e), 0, 0}));
-        }
-        return z;
-    }
-
-    latents<Real> estimate(latents<Real> const& z, Real sigma) {
-        return sequence_denoiser(phi, grids, to_view(std::as_const(background)), std::span<Real const>(sigmas),
-                                 settings, loop, meter, report)(z, sigma);
-    }
-};
-
-/// A denoiser that forgets its processor.
-struct deaf : testing::analytic_denoiser<double> {
-    template <class Processor>
-    void operator()(strided_view<double, 4> x0, strided_view<double const, 4> z, double, std::span<frame_index const>,
-                    Processor&) const {
-        copy(x0, in_view<double, 4>(z));
-    }
-};
-
-template <class Real>
-double greatest_difference(latents<Real> const& a, Real const* b) {
-    double worst = 0;
-    for (std::size_t e = 0; e < a.size(); ++e) {
-        worst = std::max(worst, std::abs(static_cast<double>(a.data()[e]) - static_cast<double>(b[e])));
-    }
-    return worst;
-}
-
-} // namespace
-
 TEST_SUITE("pipeline/sequence_denoiser") {
+    namespace {
+
+    /// A scene of six frames on 8 x 8 latents with everything a sequence denoiser refers to.
+    template <class Real>
+    struct small_run {
+        static constexpr std::size_t objects = 3;
+        static constexpr std::size_t T = 12;
+        uv_maps maps = testing::random_scene(21, 6, {32, 32}, objects);
+        testing::analytic_denoiser<Real> phi{.grid = {8, 8}, .attention = Real(0.6), .guidance_branches = 2};
+        render_settings<Real> settings;
+        std::vector<Real> sigmas{8, 3, 1, 0};
+        tensor<std::uint8_t, 3> background = background_mask(to_uv_view(maps), phi.grid);
+        correspondence_set<texel_grid> grids;
+        sequential_loop loop;
+        progress_meter meter{3, 1000, {}};
+        render_report report;
+
+        small_run() {
+            settings.steps = 3;
+            settings.keyframes.count = 3;
+            settings.normalization.enabled = false;
+            grids.add(phi.grid, [&](grid_extents grid) { return texel_grid(to_uv_view(maps), grid, {.T = T}); });
+        }
+
+        latents<Real> noise() const {
+            auto z = latents<Real>::from_shape({6, 3, 8, 8});
+            for (std::size_t e = 0; e < z.size(); ++e) {
+                z.data()[e] =
+                    static_cast<Real>(normal_value(5, random_stream::test, {static_cast<std::uint32_t>(e), 0, 0}));
+            }
+            return z;
+        }
+
+        latents<Real> estimate(latents<Real> const& z, Real sigma) {
+            return sequence_denoiser(phi, grids, to_view(std::as_const(background)), std::span<Real const>(sigmas),
+                                     settings, loop, meter, report)(z, sigma);
+        }
+    };
+
+    /// A denoiser that forgets its processor.
+    struct deaf : testing::analytic_denoiser<double> {
+        template <class Processor>
+        void operator()(strided_view<double, 4> x0, strided_view<double const, 4> z, double,
+                        std::span<frame_index const>, Processor&) const {
+            copy(x0, in_view<double, 4>(z));
+        }
+    };
+
+    template <class Real>
+    double greatest_difference(latents<Real> const& a, Real const* b) {
+        double worst = 0;
+        for (std::size_t e = 0; e < a.size(); ++e) {
+            worst = std::max(worst, std::abs(static_cast<double>(a.data()[e]) - static_cast<double>(b[e])));
+        }
+        return worst;
+    }
+
+    } // namespace
+
     TEST_CASE_TEMPLATE("[GR alg. 1] an evaluation equals the plainly written algorithm", Real, float, double) {
         small_run<Real> run;
         auto const z = run.noise();

@@ -2,6 +2,9 @@
 // [EDM alg. 1] The samplers by name.
 #include <genrender/sampling/sampler.hpp>
 
+#include <genrender/core/tensor.hpp>
+#include <genrender/sampling/karras_schedule.hpp>
+
 #include <doctest/doctest.h>
 
 #include "sampler_properties.hpp"
@@ -44,6 +47,16 @@ TEST_SUITE("sampling/sampler") {
         for (std::size_t const steps : {10U, 20U, 50U}) {
             CHECK(error_of(sampler_by_name{sampler::dpmpp_2m}, steps) <
                   0.5 * error_of(sampler_by_name{sampler::euler}, steps));
+        }
+    }
+
+    TEST_CASE("estimates of other extents are refused") {
+        auto const levels = karras_schedule<double>(3, 0.1, 10.0, 7.0);
+        auto const D = [](tensor<double, 4> const&, double) { return tensor<double, 4>::from_shape({1, 1, 2, 2}); };
+        for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
+            auto const z = tensor<double, 4>::from_shape({2, 1, 2, 2});
+            CHECK_THROWS_WITH_AS(sample(method, D, z, levels),
+                                 "sampler: D(z, sigma) is [1, 1, 2, 2], expected [2, 1, 2, 2]", shape_error);
         }
     }
 

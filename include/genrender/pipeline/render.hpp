@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -135,11 +136,14 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
     progress_meter meter(settings.steps, total, std::move(observer));
     sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
                               report, method);
-    return sample(settings.method, D, std::move(z), sigmas, [&](std::size_t step, latents<Real>& z_next) {
+    // Samplers are compiled once for all networks, maps and methods.
+    std::function<latents<Real>(latents<Real> const&, Real)> const denoise = std::cref(D);
+    std::function<void(std::size_t, latents<Real>&)> const normalize = [&](std::size_t step, latents<Real>& z_next) {
         if (settings.normalization.enabled && settings.normalization.on_noisy_latents) {
             D.normalize(z_next, step);
         }
-    });
+    };
+    return sample(settings.method, denoise, std::move(z), sigmas, normalize);
 }
 
 /// The same with the correspondence that `settings.correspondence` chooses.

@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/error.hpp>
 #include <genrender/core/linear_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
@@ -25,36 +26,30 @@ Latents euler_step(Latents const& z, Latents const& x0, Real sigma, Real sigma_n
 
 namespace detail {
 
-/// Latents whose elements the library can see as one block: samplers go through them once a step and allocate nothing.
+/// Latents whose elements the library can see: samplers go through them once a step and allocate nothing.
 template <class Latents, class Real>
-concept contiguous_latents = requires(Latents& z, Latents const& x0) {
+concept viewed_latents = requires(Latents& z, Latents const& x0) {
     { to_view(z).data() } -> std::same_as<Real*>;
     { to_view(x0).data() } -> std::same_as<Real const*>;
-    { to_view(z).is_contiguous() } -> std::same_as<bool>;
 };
 
-/// out = sum of factors times `in`, where all are blocks of as many elements; elsewhere false and nothing done.
+/// out = sum of factors times `in`. Throws shape_error for estimates of other extents than z.
 template <class Real, class Latents, class... In>
-bool combine_latents(Latents& out, std::array<Real, sizeof...(In)> const& factors, In const&... in) {
+void combine_latents(Latents& out, std::array<Real, sizeof...(In)> const& factors, In const&... in) {
     auto const view = to_view(out);
-    if (!view.is_contiguous() || !((to_view(in).is_contiguous() && to_view(in).size() == view.size()) && ...)) {
-        return false;
-    }
-    linear_combination(view.data(), view.size(), factors,
-                       std::array<Real const*, sizeof...(In)>{to_view(in).data()...});
-    return true;
+    (require_extents("sampler", "D(z, sigma)", to_view(in).extents(), view.extents()), ...);
+    linear_combination(view, factors, std::array{to_view(in)...});
 }
 
 /// `out`, which may be z, becomes euler_step(z, x0, sigma, sigma_next).
 template <class Latents, std::floating_point Real>
 void write_euler_step(Latents& out, Latents const& z, Latents const& x0, Real sigma, Real sigma_next) {
-    if constexpr (contiguous_latents<Latents, Real>) {
+    if constexpr (viewed_latents<Latents, Real>) {
         auto const kept = sigma_next / sigma;
-        if (combine_latents<Real>(out, {kept, 1 - kept}, z, x0)) {
-            return;
-        }
+        combine_latents<Real>(out, {kept, 1 - kept}, z, x0);
+    } else {
+        out = euler_step(z, x0, sigma, sigma_next);
     }
-    out = euler_step(z, x0, sigma, sigma_next);
 }
 
 } // namespace detail
