@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -84,6 +85,12 @@ TEST_SUITE("core/parallel") {
         CHECK(visits(any_loop(sequential_loop{}), 5) == std::vector<int>(5, 1));
         CHECK(visits(any_loop(threaded_loop(3)), 50) == std::vector<int>(50, 1));
         CHECK(values(any_loop(backward_loop{}), 20) == values(any_loop(), 20));
+        struct uncopied_loop : backward_loop {
+            uncopied_loop() = default;
+            uncopied_loop(uncopied_loop const&) = delete;
+        };
+        uncopied_loop const uncopied;
+        CHECK(visits(any_loop(std::cref(uncopied)), 5) == std::vector<int>(5, 1));
         std::vector<std::size_t> order;
         any_loop(backward_loop{})(3, [&](std::size_t i) { order.push_back(i); });
         CHECK(order == std::vector<std::size_t>{2, 1, 0});

@@ -27,7 +27,8 @@ namespace genrender {
 ///
 /// These the compiler cannot check, and a model owes them: every index is visited exactly once; nothing runs after the
 /// return; an exception of the body reaches the caller (the first one; indices not yet begun may then be left out).
-/// Results of the library do not depend on the model or on its number of threads.
+/// Results of the library do not depend on the model or on its number of threads. The library keeps a copy of a loop
+/// (any_loop); one that cannot be copied is handed over as std::cref(loop).
 template <class Loop>
 concept parallel_loop = requires(Loop const& loop, std::size_t count, void (*body)(std::size_t)) {
     loop(count, body);
@@ -37,7 +38,7 @@ concept parallel_loop = requires(Loop const& loop, std::size_t count, void (*bod
 class loop_body {
 public:
     template <class Body>
-        requires(!std::is_same_v<std::remove_cvref_t<Body>, loop_body>)
+        requires(!std::is_same_v<std::remove_cvref_t<Body>, loop_body> && std::is_invocable_v<Body&, std::size_t>)
     loop_body(Body&& body)
         : body_(std::addressof(body)), call_([](void const* function, std::size_t i) {
               using function_type = std::remove_reference_t<Body>;
