@@ -92,7 +92,7 @@ and then this script again."
 }
 
 # Configures, builds and tests one preset of CMakePresets.json. Ninja would run two jobs more than there are processors, which
-# takes a quarter longer: compilers wait for memory and not for files.
+# takes up to a third longer: compilers wait for memory and not for files.
 workflow() {
     export CMAKE_BUILD_PARALLEL_LEVEL="${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"
     say "Preset $1"
