@@ -6,6 +6,7 @@
 
 #include <genrender/reference/activation.hpp>
 #include <genrender/reference/conv2d.hpp>
+#include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/unet_encoder.hpp>
 
 #include <array>

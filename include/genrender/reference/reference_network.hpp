@@ -4,13 +4,13 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/attention/attention_processor.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 #include <genrender/reference/controlnet.hpp>
 #include <genrender/reference/embedded_hints.hpp>
 #include <genrender/reference/encoded_frames.hpp>
+#include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/reference_weights.hpp>
 #include <genrender/reference/stopping_processor.hpp>

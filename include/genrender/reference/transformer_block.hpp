@@ -4,11 +4,10 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/attention/attention_processor.hpp>
+#include <genrender/attention/host_features.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
-#include <genrender/injection/host_attention_call.hpp>
 #include <genrender/reference/attention_matrices.hpp>
 #include <genrender/reference/feature_maps.hpp>
 #include <genrender/reference/feed_forward.hpp>

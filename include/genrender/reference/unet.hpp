@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/reference/conv2d.hpp>
+#include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/group_norm.hpp>
 #include <genrender/reference/padded_map.hpp>
 #include <genrender/reference/unet_encoder.hpp>
