@@ -52,20 +52,20 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     core/vectors.hpp
     core/vectors.inl
     core/widening.inl
-    guidance/background_mask.hpp
-    guidance/canonical_maps.hpp
-    guidance/cell_extents.hpp
-    guidance/depth_maps.hpp
-    guidance/uv_convention.hpp
-    guidance/uv_maps.hpp
-    guidance/uv_maps_view.hpp
-    guidance/uv_report.hpp
+    maps/background_mask.hpp
+    maps/canonical_maps.hpp
+    maps/cell_extents.hpp
+    maps/depth_maps.hpp
+    maps/uv_convention.hpp
+    maps/uv_maps.hpp
+    maps/uv_maps_view.hpp
+    maps/uv_report.hpp
     correspondence/correspondence_map.hpp
     correspondence/correspondence_set.hpp
     correspondence/footprint_map.hpp
-    correspondence/kept_frame.hpp
-    correspondence/kept_samples.hpp
-    correspondence/recent_frames.hpp
+    correspondence/frame_samples.hpp
+    correspondence/object_samples.hpp
+    correspondence/frame_cache.hpp
     correspondence/representative_pixel.hpp
     correspondence/reproject.hpp
     correspondence/sample_bins.hpp
@@ -75,7 +75,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     correspondence/sample_grid.inl
     correspondence/sample_pack.hpp
     correspondence/sample_tree.hpp
-    correspondence/surface_correspondence.hpp
+    correspondence/chosen_correspondence.hpp
     correspondence/surface_footprint.hpp
     correspondence/surface_sample.hpp
     correspondence/texel_grid.hpp
@@ -141,7 +141,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     pipeline/render_settings.hpp
     pipeline/run_description.hpp
     pipeline/sequence_denoiser.hpp
-    pipeline/sequence_evaluation.hpp
+    pipeline/sequence_passes.hpp
     pipeline/sequence_method.hpp
     baselines/baseline_settings.hpp
     baselines/per_frame.hpp

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Your own correspondence in place of the library's: points of a rolling ball in its rest pose, without any texture.
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <genrender/reference/reference_network.hpp>
 #include <genrender/pipeline/render.hpp>
 

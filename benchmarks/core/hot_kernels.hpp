@@ -150,7 +150,7 @@ inline kernel_run make_normalize() {
 }
 
 /// Steps of a sampler whose denoiser finds what it is given; so few latents that no memory comes from the system anew.
-template <sampler Method>
+template <sampler_kind Kind>
 kernel_run make_sampler() {
     struct inputs {
         latents<float> z = latents<float>::from_shape({6, 4, 32, 32});
@@ -160,7 +160,7 @@ kernel_run make_sampler() {
     in->z.fill(0.25F);
     return run_on(in, [](inputs& of) {
         sample(
-            Method, [](latents<float> const& z, float) -> latents<float> const& { return z; }, of.z, of.sigmas);
+            Kind, [](latents<float> const& z, float) -> latents<float> const& { return z; }, of.z, of.sigmas);
     });
 }
 
@@ -244,8 +244,8 @@ inline constexpr std::array hot_kernels{
     hot_kernel{"matching", 0, detail::make_matching},
     hot_kernel{"statistics", 0, detail::make_statistics},
     hot_kernel{"normalize", 0, detail::make_normalize},
-    hot_kernel{"heun", 0, detail::make_sampler<sampler::heun>},
-    hot_kernel{"dpmpp_2m", 0, detail::make_sampler<sampler::dpmpp_2m>},
+    hot_kernel{"heun", 0, detail::make_sampler<sampler_kind::heun>},
+    hot_kernel{"dpmpp_2m", 0, detail::make_sampler<sampler_kind::dpmpp_2m>},
     hot_kernel{"guidance", 0, detail::make_guidance},
     hot_kernel{"product", 2.0 * 1024 * 320 * 320, detail::make_product},
     hot_kernel{"convolution", 2.0 * 1024 * 9 * 128 * 128, detail::make_convolution},

@@ -39,7 +39,7 @@ void keep_frame(benchmark::State& state) {
     std::uint32_t turn = 0;
     for (auto _ : state) {
         frame_index const i{turn++ % frames};
-        kept_frame<2> const kept(maps, i, {side, side}, 1, [&](token_index token) {
+        frame_samples<2> const kept(maps, i, {side, side}, 1, [&](token_index token) {
             return representative_pixel(maps, i, {side, side}, token);
         });
         benchmark::DoNotOptimize(kept.samples_of({0}));

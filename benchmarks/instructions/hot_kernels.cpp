@@ -3,7 +3,7 @@
 #include <genrender/attention/scaled_dot_product.hpp>
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/core/stack.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <genrender/noise/initial_noise.hpp>
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <genrender/pipeline/render.hpp>
 
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/depth_maps.hpp>
+#include <genrender/maps/depth_maps.hpp>
 #include <genrender/scene/rasterizer.hpp>
 #include <genrender/reference/reference_network.hpp>
 #include <genrender/reference/reference_weights.hpp>

@@ -75,7 +75,7 @@ private:
         for (auto const side : sides) {
             for (std::size_t i = 0; i < count; ++i) {
                 auto const name = std::to_string(side) + "." + std::to_string(i);
-                sites_.push_back({name, network_kind::denoiser, part, {side, side}, 0});
+                sites_.push_back({name, network_kind::denoising, part, {side, side}, 0});
             }
         }
     }

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <genrender/core/stack.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/canonical_maps.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 
 #include <array>
 #include <cmath>

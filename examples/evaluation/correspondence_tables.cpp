@@ -9,7 +9,7 @@
 
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
-#include <genrender/correspondence/surface_correspondence.hpp>
+#include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/evaluation/pixel_correspondence.hpp>
 #include <genrender/scene/rasterizer.hpp>
 #include <genrender/noise/initial_noise.hpp>
@@ -61,7 +61,7 @@ struct matching {
 /// The truth is where a pixel of the maps shows the very point, to half a pixel.
 matching match(uv_maps_view const& maps, pixel_correspondence const& truth, grid_extents grid,
                correspondence_settings const& settings) {
-    surface_correspondence<2> const map(maps, grid, settings);
+    chosen_correspondence<2> const map(maps, grid, settings);
     auto const pixels = maps.grid();
     auto const cell = static_cast<double>(pixels.width / grid.width);
     auto const frames = static_cast<std::uint32_t>(maps.frame_count());

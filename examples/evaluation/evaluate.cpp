@@ -95,7 +95,7 @@ std::vector<compared_method<network>> chosen_methods(options const& told) {
 render_settings<float> shared_settings(options const& told, std::uint64_t seed) {
     render_settings<float> settings;
     settings.steps = told.steps;
-    settings.method = sampler::dpmpp_2m;
+    settings.sampler = sampler_kind::dpmpp_2m;
     settings.noise.seed = seed;
     settings.keyframes.seed = seed;
     settings.keyframes.count = std::min(told.keyframes, told.frames);

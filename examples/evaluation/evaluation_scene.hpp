@@ -13,9 +13,9 @@
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/evaluation/pixel_correspondence.hpp>
-#include <genrender/guidance/depth_maps.hpp>
+#include <genrender/maps/depth_maps.hpp>
 #include <genrender/scene/rasterizer.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -7,7 +7,7 @@
 #include <genrender/baselines/pix2video.hpp>
 #include <genrender/baselines/tokenflow.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 #include <genrender/pipeline/render.hpp>
 
 #include <cstddef>

@@ -11,7 +11,7 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/depth_maps.hpp>
+#include <genrender/maps/depth_maps.hpp>
 #include <genrender/scene/frame_rasterizer.hpp>
 #include <genrender/scene/rasterizer.hpp>
 #include <genrender/scene/animation.hpp>

@@ -6,9 +6,9 @@
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/depth_maps.hpp>
-#include <genrender/guidance/uv_convention.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/depth_maps.hpp>
+#include <genrender/maps/uv_convention.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <algorithm>
 #include <bitset>

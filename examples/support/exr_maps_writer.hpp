@@ -7,8 +7,8 @@
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/depth_maps.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/depth_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>

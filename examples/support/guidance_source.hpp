@@ -8,8 +8,8 @@
 #include "render_options.hpp"
 
 #include <genrender/scene/rasterizer.hpp>
-#include <genrender/guidance/uv_convention.hpp>
-#include <genrender/guidance/uv_report.hpp>
+#include <genrender/maps/uv_convention.hpp>
+#include <genrender/maps/uv_report.hpp>
 #include <genrender/noise/background_noise.hpp>
 #include <genrender/scene/camera.hpp>
 

@@ -28,8 +28,8 @@ struct my_denoiser {
     static constexpr grid_extents grid{8, 8};
     my_engine::network net;
     std::array<attention_site, 2> modules{
-        {{"down.attn1", network_kind::denoiser, network_part::encoder, grid, net.channels},
-         {"up.attn1", network_kind::denoiser, network_part::decoder, grid, net.channels}}};
+        {{"down.attn1", network_kind::denoising, network_part::encoder, grid, net.channels},
+         {"up.attn1", network_kind::denoising, network_part::decoder, grid, net.channels}}};
     std::size_t latent_channels() const { return net.latent_channels; }
     grid_extents latent_grid() const { return grid; }
     std::span<attention_site const> sites() const { return modules; }

@@ -7,8 +7,8 @@
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/strided_view.hpp>
-#include <genrender/guidance/depth_maps.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/depth_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <png.h>
 

@@ -246,9 +246,9 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     if (keyframes_option->count() > 0) {
         options.keyframes = keyframes;
     }
-    settings.method = sampler_name == "heun"       ? sampler::heun
-                      : sampler_name == "dpmpp_2m" ? sampler::dpmpp_2m
-                                                   : sampler::euler;
+    settings.sampler = sampler_name == "heun"       ? sampler_kind::heun
+                       : sampler_name == "dpmpp_2m" ? sampler_kind::dpmpp_2m
+                                                    : sampler_kind::euler;
     settings.alpha = [alpha](std::size_t, attention_site const&) { return alpha; };
     settings.pre_attention = !no_pre;
     settings.post_attention = !no_post;

@@ -94,7 +94,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["size"] = {source.image.height, source.image.width};
     told["map_size"] = {source.guidance.uv.grid().height, source.guidance.uv.grid().width};
     told["steps"] = settings.steps;
-    told["sampler"] = samplers[static_cast<std::size_t>(settings.method)];
+    told["sampler"] = samplers[static_cast<std::size_t>(settings.sampler)];
     told["seed"] = options.seed;
     told["vectors"] = name_of(report.vector_target());
     told["noise"] = noises[static_cast<std::size_t>(settings.noise.kind)];

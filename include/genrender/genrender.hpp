@@ -24,21 +24,21 @@
 #include <genrender/core/vector_unit.hpp>
 #include <genrender/core/vectors.hpp>
 
-#include <genrender/guidance/background_mask.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/guidance/cell_extents.hpp>
-#include <genrender/guidance/depth_maps.hpp>
-#include <genrender/guidance/uv_convention.hpp>
-#include <genrender/guidance/uv_maps.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
-#include <genrender/guidance/uv_report.hpp>
+#include <genrender/maps/background_mask.hpp>
+#include <genrender/maps/canonical_maps.hpp>
+#include <genrender/maps/cell_extents.hpp>
+#include <genrender/maps/depth_maps.hpp>
+#include <genrender/maps/uv_convention.hpp>
+#include <genrender/maps/uv_maps.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
+#include <genrender/maps/uv_report.hpp>
 
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
 #include <genrender/correspondence/footprint_map.hpp>
-#include <genrender/correspondence/kept_frame.hpp>
-#include <genrender/correspondence/kept_samples.hpp>
-#include <genrender/correspondence/recent_frames.hpp>
+#include <genrender/correspondence/frame_samples.hpp>
+#include <genrender/correspondence/object_samples.hpp>
+#include <genrender/correspondence/frame_cache.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/reproject.hpp>
 #include <genrender/correspondence/sample_bins.hpp>
@@ -46,7 +46,7 @@
 #include <genrender/correspondence/sample_grid.hpp>
 #include <genrender/correspondence/sample_pack.hpp>
 #include <genrender/correspondence/sample_tree.hpp>
-#include <genrender/correspondence/surface_correspondence.hpp>
+#include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
@@ -113,7 +113,7 @@
 #include <genrender/pipeline/render_settings.hpp>
 #include <genrender/pipeline/run_description.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
-#include <genrender/pipeline/sequence_evaluation.hpp>
+#include <genrender/pipeline/sequence_passes.hpp>
 #include <genrender/pipeline/sequence_method.hpp>
 
 #include <genrender/baselines/baseline_settings.hpp>

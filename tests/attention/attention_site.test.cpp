@@ -12,7 +12,7 @@ using namespace genrender;
 TEST_SUITE("attention/attention_site") {
     TEST_CASE("a site is one of the denoiser's decoder unless it says otherwise") {
         attention_site const site;
-        CHECK(site.network == network_kind::denoiser);
+        CHECK(site.network == network_kind::denoising);
         CHECK(site.part == network_part::decoder);
         CHECK(site.grid.size() == 0);
         CHECK(site.channels == 0);

@@ -20,13 +20,13 @@ TEST_SUITE("baselines/baseline_settings") {
         render_settings<double> settings;
         settings.steps = 7;
         settings.noise.seed = 9;
-        settings.method = sampler::heun;
+        settings.sampler = sampler_kind::heun;
         settings.keyframes.count = 2;
         settings.window_end = 0.5;
         auto const baseline = baseline_settings(settings);
         CHECK(baseline.steps == 7);
         CHECK(baseline.noise.seed == 9);
-        CHECK(baseline.method == sampler::heun);
+        CHECK(baseline.sampler == sampler_kind::heun);
         CHECK(baseline.keyframes.count == 2);
         CHECK(baseline.window_end == 0.5);
     }

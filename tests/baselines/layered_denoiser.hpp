@@ -32,10 +32,10 @@ struct layered_denoiser {
     static constexpr std::size_t channels = 6;
     Real conditioning = 1; ///< how much the network knows of the frame's number
     std::array<attention_site, 4> modules{
-        {{"down.attn1", network_kind::denoiser, network_part::encoder, grid, channels},
-         {"up.0.attn1", network_kind::denoiser, network_part::decoder, coarse, channels},
-         {"up.1.attn1", network_kind::denoiser, network_part::decoder, grid, channels},
-         {"up.2.attn1", network_kind::denoiser, network_part::decoder, grid, channels}}};
+        {{"down.attn1", network_kind::denoising, network_part::encoder, grid, channels},
+         {"up.0.attn1", network_kind::denoising, network_part::decoder, coarse, channels},
+         {"up.1.attn1", network_kind::denoising, network_part::decoder, grid, channels},
+         {"up.2.attn1", network_kind::denoising, network_part::decoder, grid, channels}}};
     std::deque<matrix_module<Real>> weights;
     std::array<stack<Real, 2>, 2> lift; // of each branch, [channels, 3]
 

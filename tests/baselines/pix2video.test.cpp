@@ -119,8 +119,8 @@ TEST_SUITE("baselines/pix2video") {
         layered_denoiser<Real> const phi;
         render_settings<Real> settings;
         settings.steps = 3;
-        for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
-            settings.method = method;
+        for (auto const method : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
+            settings.sampler = method;
             check_sequence_method_laws(pix2video{}, phi, maps, settings);
         }
     }

@@ -6,7 +6,7 @@
 #include "layered_denoiser.hpp"
 
 #include <genrender/correspondence/texel_grid.hpp>
-#include <genrender/guidance/background_mask.hpp>
+#include <genrender/maps/background_mask.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 

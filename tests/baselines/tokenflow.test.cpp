@@ -297,8 +297,8 @@ TEST_SUITE("baselines/tokenflow") {
         settings.steps = 3;
         settings.keyframes.count = 2;
         settings.window_end = Real(0.7);
-        for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
-            settings.method = method;
+        for (auto const method : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
+            settings.sampler = method;
             check_sequence_method_laws(tokenflow{}, phi, maps, settings);
         }
     }

@@ -4,7 +4,7 @@
 
 #include "../support/random_scene.hpp"
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 

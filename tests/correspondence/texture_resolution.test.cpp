@@ -2,7 +2,7 @@
 // [GR sec. 3.2] T by hand and T by density.
 #include <genrender/correspondence/texture_resolution.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 

@@ -29,7 +29,7 @@ token_matches matches_of(std::uint32_t token) {
 
 TEST_SUITE("correspondence/token_matches") {
     TEST_CASE("a pair that is kept is not made again") {
-        kept_matches kept(1000);
+        match_cache kept(1000);
         std::size_t made = 0;
         auto const make = [&] {
             ++made;
@@ -46,7 +46,7 @@ TEST_SUITE("correspondence/token_matches") {
     }
 
     TEST_CASE("what there is no room for is made again and what came first stays") {
-        kept_matches kept(token_matches::bytes_of(2));
+        match_cache kept(token_matches::bytes_of(2));
         std::size_t made = 0;
         auto const make = [&] {
             ++made;
@@ -59,7 +59,7 @@ TEST_SUITE("correspondence/token_matches") {
         kept.of({0}, {0}, make);
         CHECK(made == 3);
         CHECK(kept.byte_count() == token_matches::bytes_of(2));
-        kept_matches none(0);
+        match_cache none(0);
         CHECK(none.of({0}, {0}, make)->tokens[0] == 3);
         CHECK(none.byte_count() == 0);
     }
@@ -67,22 +67,22 @@ TEST_SUITE("correspondence/token_matches") {
     TEST_CASE("matches outlive what kept them and lie in few chunks") {
         std::shared_ptr<token_matches const> last;
         {
-            kept_matches kept(1U << 20);
+            match_cache kept(1U << 20);
             for (std::uint32_t frame = 0; frame < 500; ++frame) {
                 last = kept.of({frame}, {0}, [&] { return matches_of(frame); });
             }
             CHECK(kept.byte_count() == 500 * token_matches::bytes_of(2));
         }
         CHECK(last->tokens[0] == 499);
-        CHECK(kept_matches::expected_bytes(500, 2, 1U << 20) == kept_matches::chunk_bytes);
-        CHECK(kept_matches::expected_bytes(100000, 2, 1U << 20) == 2 * kept_matches::chunk_bytes);
-        CHECK(kept_matches::expected_bytes(500, 2, 0) == 0);
+        CHECK(match_cache::expected_bytes(500, 2, 1U << 20) == match_cache::chunk_bytes);
+        CHECK(match_cache::expected_bytes(100000, 2, 1U << 20) == 2 * match_cache::chunk_bytes);
+        CHECK(match_cache::expected_bytes(500, 2, 0) == 0);
     }
 
     TEST_CASE("many pairs of many sizes keep what was written and lie in chunks without holes") {
         for (std::size_t const tokens : {1U, 37U, 5000U, 70000U}) {
             std::size_t const pairs = 40;
-            kept_matches kept(pairs * token_matches::bytes_of(tokens));
+            match_cache kept(pairs * token_matches::bytes_of(tokens));
             std::vector<std::shared_ptr<token_matches const>> all;
             auto const before = testing::counted_memory::live.load();
             for (std::uint32_t frame = 0; frame < pairs; ++frame) {
@@ -110,14 +110,14 @@ TEST_SUITE("correspondence/token_matches") {
                 CHECK(keeps_all);
             }
             // All in whole chunks but for the links between pairs and the handles here, whose vectors grow by halves.
-            auto const planned = kept_matches::expected_bytes(pairs, tokens, ~std::size_t{0});
+            auto const planned = match_cache::expected_bytes(pairs, tokens, ~std::size_t{0});
             CHECK(taken <= planned + pairs * 200);
         }
     }
 
     TEST_CASE("a pair that is larger than a chunk has one of its own") {
-        kept_matches kept(~std::size_t{0});
-        auto const tokens = kept_matches::chunk_bytes;
+        match_cache kept(~std::size_t{0});
+        auto const tokens = match_cache::chunk_bytes;
         auto const first = kept.of({0}, {1}, [&] { return token_matches(tokens); });
         auto const second = kept.of({1}, {0}, [&] { return matches_of(5); });
         auto const third = kept.of({2}, {0}, [&] { return matches_of(6); });
@@ -129,7 +129,7 @@ TEST_SUITE("correspondence/token_matches") {
     }
 
     TEST_CASE("threads get equal matches") {
-        kept_matches kept(100000);
+        match_cache kept(100000);
         std::atomic<std::size_t> wrong{0};
         threaded_loop(4)(400, [&](std::size_t n) {
             auto const frame = static_cast<std::uint32_t>(n % 10);

@@ -3,7 +3,7 @@
 #include <genrender/evaluation/pixel_correspondence.hpp>
 
 #include <genrender/correspondence/reproject.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 
 #include "scratch_folder.hpp"
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <support/slanted_maps.hpp>
 
 #include <doctest/doctest.h>

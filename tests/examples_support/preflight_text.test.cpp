@@ -2,7 +2,7 @@
 // The text lines up, says first what to do, and tells the unmeasured from zero.
 #include <examples/support/preflight_text.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <support/slanted_maps.hpp>
 
 #include <doctest/doctest.h>

@@ -107,10 +107,10 @@ void render_a_box(figures& found) {
     found.emplace_back("tokens of footprints", tokens);
 
     testing::analytic_denoiser<float> const phi{.grid = {16, 16}, .attention = 0.5F};
-    for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
+    for (auto const method : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
         render_settings<float> settings;
         settings.steps = 4;
-        settings.method = method;
+        settings.sampler = method;
         settings.keyframes.count = 2;
         render_report report;
         auto const z_0 = render(phi, UV, settings, report);

@@ -5,7 +5,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # The rooms of the core in the order the data flows: a header includes its own room and those before it. A component is a
 # room after them, and no other component includes it.
-set(core_rooms core guidance correspondence noise attention sampling keyframes blending injection normalization pipeline
+set(core_rooms core maps correspondence noise attention sampling keyframes blending injection normalization pipeline
     baselines)
 set(genrender_components "")
 include(${ROOT}/cmake/components.cmake)

@@ -2,7 +2,7 @@
 // Pixels whose coordinates are not finite are background; all others stay what they are.
 #include <genrender/inspection/finite_maps.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 // A frame counts all its pixels, object by object, and compares no more of them than it is told to.
 #include <genrender/inspection/frame_inspection.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <support/slanted_maps.hpp>
 
 #include <doctest/doctest.h>

@@ -3,7 +3,7 @@
 #include <genrender/inspection/map_check.hpp>
 
 #include <genrender/core/stack.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <support/slanted_maps.hpp>
 
 #include <doctest/doctest.h>

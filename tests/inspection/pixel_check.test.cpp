@@ -2,7 +2,7 @@
 // Seams, blended edges and points shown twice are told apart from surfaces that are merely steep, curved or small.
 #include <genrender/inspection/pixel_check.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <support/slanted_maps.hpp>
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 // A pre-flight measures what a run will do, and of bad input says a sentence: never a crash or a silent zero.
 #include <genrender/inspection/preflight.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <support/slanted_maps.hpp>
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 // A surface point is found where it is seen, to a fraction of a pixel, however few pixels are remembered.
 #include <genrender/inspection/screen_search.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <support/slanted_maps.hpp>
 
 #include <doctest/doctest.h>

@@ -5,7 +5,7 @@
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/keyframes/recorder.hpp>
 

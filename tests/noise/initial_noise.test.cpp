@@ -4,7 +4,7 @@
 
 #include <genrender/core/stack.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 #include <genrender/noise/surface_noise.hpp>
 
 #include <genrender/core/stack.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <genrender/noise/initial_noise.hpp>
 
 #include <doctest/doctest.h>

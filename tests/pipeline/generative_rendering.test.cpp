@@ -38,8 +38,8 @@ TEST_SUITE("pipeline/generative_rendering") {
         settings.steps = 3;
         settings.keyframes.count = 2;
         settings.window_begin = Real(0.3);
-        for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
-            settings.method = method;
+        for (auto const method : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
+            settings.sampler = method;
             testing::check_sequence_method_laws(generative_rendering{}, phi, maps, settings);
         }
     }

@@ -34,8 +34,8 @@ run_description described_run() {
     run.latent_channels = 4;
     run.latent_grid = {4, 6};
     run.branches = 2;
-    run.sites = {{"in", network_kind::denoiser, network_part::encoder, {4, 6}, 5},
-                 {"out", network_kind::denoiser, network_part::decoder, {2, 3}, 10}};
+    run.sites = {{"in", network_kind::denoising, network_part::encoder, {4, 6}, 5},
+                 {"out", network_kind::denoising, network_part::decoder, {2, 3}, 10}};
     run.map_grid = {16, 24};
     return run;
 }
@@ -105,12 +105,12 @@ TEST_SUITE("pipeline/memory_plan") {
         CHECK(plan_memory(run, settings).bytes.residuals == 3000);
         settings.reuses_keyframes = false;
         CHECK(plan_memory(run, settings).bytes.residuals == 0);
-        settings.method = sampler::heun;
+        settings.sampler = sampler_kind::heun;
         CHECK(plan_memory(run, settings).bytes.latents == 2 * plan.bytes.latents);
         // Two steps draw six keyframes or fewer; their matches with 20 frames fit into one chunk.
         CHECK(plan.bytes.correspondence == footprint_map<2>::expected_bytes(20, 6));
-        CHECK(plan.bytes.matching > kept_matches::chunk_bytes);
-        CHECK(plan.bytes.matching <= kept_matches::chunk_bytes + 6 * kept_frame<2>::expected_bytes(384, 64));
+        CHECK(plan.bytes.matching > match_cache::chunk_bytes);
+        CHECK(plan.bytes.matching <= match_cache::chunk_bytes + 6 * frame_samples<2>::expected_bytes(384, 64));
         settings.correspondence.kind = correspondence_kind::texel_grid;
         CHECK(plan_memory(run, settings).bytes.matching == 0);
     }
@@ -142,10 +142,10 @@ TEST_SUITE("pipeline/memory_plan") {
     TEST_CASE("the plan's attention is what the denoiser is then asked for") {
         auto const maps = testing::random_scene(33, 6, {32, 32}, 3);
         wide_denoiser const phi;
-        for (auto const method : {sampler::euler, sampler::heun}) {
+        for (auto const method : {sampler_kind::euler, sampler_kind::heun}) {
             for (auto const keeps_own_copy : {true, false}) {
                 auto settings = two_steps();
-                settings.method = method;
+                settings.sampler = method;
                 settings.keeps_own_copy = keeps_own_copy;
                 phi.attention_flops = 0;
                 render_report report;
@@ -161,8 +161,8 @@ TEST_SUITE("pipeline/memory_plan") {
             return;
         }
         auto settings = two_steps();
-        for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
-            settings.method = method;
+        for (auto const method : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
+            settings.sampler = method;
             auto const few = compare(24, settings);
             auto const many = compare(240, settings);
             MESSAGE("planned ", few.plan.bytes.peak, " and ", many.plan.bytes.peak, " bytes, measured ", few.measured,

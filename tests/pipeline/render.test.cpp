@@ -63,9 +63,9 @@ TEST_SUITE("pipeline/render") {
         initial_noise(to_view(z_T), to_uv_view(scene()), frames, settings.noise);
         z_T *= settings.sigma_max;
         auto const shrink = phi.spread / std::sqrt(phi.spread * phi.spread + settings.sigma_max * settings.sigma_max);
-        for (auto const& [method, bound] :
-             {std::pair(sampler::euler, 0.05), std::pair(sampler::heun, 0.005), std::pair(sampler::dpmpp_2m, 0.005)}) {
-            settings.method = method;
+        for (auto const& [method, bound] : {std::pair(sampler_kind::euler, 0.05), std::pair(sampler_kind::heun, 0.005),
+                                            std::pair(sampler_kind::dpmpp_2m, 0.005)}) {
+            settings.sampler = method;
             render_report report;
             auto const z = render(phi, to_uv_view(scene()), settings, report);
             double worst = 0;
@@ -206,10 +206,10 @@ TEST_SUITE("pipeline/render") {
     }
     TEST_CASE("the estimate runs out for every sampler and window") {
         auto const phi = with_attention();
-        for (auto const method : {sampler::euler, sampler::heun, sampler::dpmpp_2m}) {
+        for (auto const method : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
             for (auto const end : {0.0, 0.6, 1.0}) {
                 auto settings = few_steps();
-                settings.method = method;
+                settings.sampler = method;
                 settings.window_end = end;
                 render_report report;
                 progress last;
@@ -226,7 +226,7 @@ TEST_SUITE("pipeline/render") {
     TEST_CASE("frames to denoise are counted by hand") {
         auto settings = few_steps(); // 4 steps, 3 keyframes
         CHECK(frames_to_denoise(settings, 6) == 4 * (6 + 3));
-        settings.method = sampler::heun;
+        settings.sampler = sampler_kind::heun;
         CHECK(frames_to_denoise(settings, 6) == 7 * (6 + 3));
         settings.window_begin = 0.5; // Steps 2 and 3 have keyframes, each evaluated twice.
         CHECK(frames_to_denoise(settings, 6) == 7 * 6 + 4 * 3);

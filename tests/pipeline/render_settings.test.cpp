@@ -11,7 +11,7 @@ TEST_SUITE("pipeline/render_settings") {
         render_settings<Real> const settings;
         CHECK(settings.steps == 50);
         CHECK(settings.sigma_max == Real(14.6146));
-        CHECK(settings.method == sampler::euler);
+        CHECK(settings.sampler == sampler_kind::euler);
         CHECK(settings.noise.kind == noise_kind::uv);
         CHECK(settings.noise.background == background_noise::fixed);
         CHECK(settings.keyframes.drawing == keyframe_drawing::uniform);
@@ -33,7 +33,7 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(is_in_decoder(site, 1));
         site.network = network_kind::control;
         CHECK(!is_in_decoder(site, 0));
-        site.network = network_kind::denoiser;
+        site.network = network_kind::denoising;
         site.part = network_part::encoder;
         CHECK(!is_in_decoder(site, 0));
         site.part = network_part::middle;

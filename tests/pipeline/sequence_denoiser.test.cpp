@@ -6,7 +6,7 @@
 #include "../support/random_scene.hpp"
 
 #include <genrender/correspondence/texel_grid.hpp>
-#include <genrender/guidance/background_mask.hpp>
+#include <genrender/maps/background_mask.hpp>
 
 #include <doctest/doctest.h>
 

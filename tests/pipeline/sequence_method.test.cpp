@@ -17,7 +17,7 @@ using namespace genrender;
 
 namespace {
 
-using evaluation_type = sequence_evaluation<testing::analytic_denoiser<double>, correspondence_map_archetype>;
+using passes_type = sequence_passes<testing::analytic_denoiser<double>, correspondence_map_archetype>;
 
 /// A user's method: the middle frame runs as a keyframe, then all frames by themselves.
 struct middle_first {
@@ -29,17 +29,16 @@ struct middle_first {
     bool uses_correspondence(render_settings<Real> const&) const {
         return false;
     }
-    template <class Evaluation>
-    void operator()(Evaluation const& evaluation) const {
-        evaluation.record_keyframes(keyframes(evaluation.settings(), evaluation.frame_count(), evaluation.step()),
-                                    true);
-        evaluation.denoise_frames_alone();
+    template <class Passes>
+    void operator()(Passes const& passes) const {
+        passes.record_keyframes(keyframes(passes.settings(), passes.frame_count(), passes.step()), true);
+        passes.denoise_frames_alone();
     }
 };
 
 struct without_keyframes {
     bool uses_correspondence(render_settings<double> const&) const;
-    void operator()(evaluation_type const&) const;
+    void operator()(passes_type const&) const;
 };
 struct without_body {
     std::vector<frame_index> keyframes(render_settings<double> const&, std::size_t, std::size_t) const;
@@ -50,13 +49,13 @@ struct without_body {
 
 TEST_SUITE("pipeline/sequence_method") {
     TEST_CASE("the paper's method and a user's own are sequence methods") {
-        CHECK(sequence_method<generative_rendering, evaluation_type>);
-        CHECK(sequence_method<middle_first, evaluation_type>);
+        CHECK(sequence_method<generative_rendering, passes_type>);
+        CHECK(sequence_method<middle_first, passes_type>);
     }
     TEST_CASE("what tells no keyframes or denoises nothing is none") {
-        CHECK_FALSE(sequence_method<without_keyframes, evaluation_type>);
-        CHECK_FALSE(sequence_method<without_body, evaluation_type>);
-        CHECK_FALSE(sequence_method<int, evaluation_type>);
+        CHECK_FALSE(sequence_method<without_keyframes, passes_type>);
+        CHECK_FALSE(sequence_method<without_body, passes_type>);
+        CHECK_FALSE(sequence_method<int, passes_type>);
     }
     TEST_CASE("a user's own method runs in the same machinery and keeps the laws") {
         auto const maps = testing::random_scene(33, 5, {32, 32}, 2);

@@ -143,7 +143,7 @@ TEST_SUITE("reference/reference_network") {
         REQUIRE(sites.size() == names.size());
         for (std::size_t s = 0; s < names.size(); ++s) {
             CHECK(sites[s].name == names[s]);
-            CHECK(sites[s].network == (s < 2 ? network_kind::control : network_kind::denoiser));
+            CHECK(sites[s].network == (s < 2 ? network_kind::control : network_kind::denoising));
         }
         CHECK(sites[0].part == network_part::encoder);
         CHECK(sites[1].part == network_part::middle);

@@ -13,7 +13,7 @@ TEST_SUITE("reference/site_list") {
         site_list sites({16, 24});
         sites.begin(network_kind::control);
         CHECK(sites.add("a.attn1", network_part::encoder, 1, 64).value == 0);
-        sites.begin(network_kind::denoiser);
+        sites.begin(network_kind::denoising);
         CHECK(sites.add("b.attn1", network_part::middle, 3, 96).value == 1);
         auto const found = sites.sites();
         CHECK(found.size() == 2);
@@ -21,7 +21,7 @@ TEST_SUITE("reference/site_list") {
         CHECK(found[0].network == network_kind::control);
         CHECK(found[0].grid == grid_extents{8, 12});
         CHECK(found[0].channels == 64);
-        CHECK(found[1].network == network_kind::denoiser);
+        CHECK(found[1].network == network_kind::denoising);
         CHECK(found[1].part == network_part::middle);
         CHECK(found[1].grid == grid_extents{2, 3});
     }

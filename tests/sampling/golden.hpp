@@ -21,7 +21,7 @@ enum class prior { gaussian, two_points, two_clusters };
 /// One run over the Karras levels of `steps` steps.
 struct run {
     prior of;
-    sampler method;
+    sampler_kind method;
     std::size_t steps;
     std::size_t evaluations;
     std::array<double, 4> last; ///< what becomes of the starts
@@ -82,7 +82,7 @@ inline std::vector<run> read_runs() {
         runs.push_back({named(one.at("prior").get<std::string>(), std::array{"gaussian", "two_points", "two_clusters"},
                               std::array{prior::gaussian, prior::two_points, prior::two_clusters}),
                         named(one.at("sampler").get<std::string>(), std::array{"euler", "heun", "dpmpp_2m"},
-                              std::array{sampler::euler, sampler::heun, sampler::dpmpp_2m}),
+                              std::array{sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}),
                         one.at("steps").get<std::size_t>(), one.at("evaluations").get<std::size_t>(),
                         one.at("last").get<std::array<double, 4>>()});
     }

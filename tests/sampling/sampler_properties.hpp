@@ -25,7 +25,7 @@ namespace genrender {
 /// In what samplers differ.
 struct sampler_facts {
     std::string name;        ///< in front of what it says
-    sampler method;          ///< as golden runs and evaluations() know it
+    sampler_kind method;     ///< as golden runs and evaluations() know it
     double order;            ///< of convergence
     double order_bound;      ///< how far the measured order may be from it
     std::size_t many_steps;  ///< of a run that ends
@@ -33,11 +33,11 @@ struct sampler_facts {
     double error_of_network; ///< as are 400 steps through an exact network and its preconditioning
 };
 
-inline sampler_facts facts_of(sampler method) {
+inline sampler_facts facts_of(sampler_kind method) {
     switch (method) {
-    case sampler::euler:
+    case sampler_kind::euler:
         return {"euler", method, 1, 0.05, 4000, 0.005, 0.02};
-    case sampler::heun:
+    case sampler_kind::heun:
         return {"heun", method, 2, 0.05, 1000, 1e-5, 0.001};
     default:
         return {"dpmpp_2m", method, 2, 0.1, 1000, 1e-4, 0.001};
@@ -47,7 +47,7 @@ inline sampler_facts facts_of(sampler method) {
 /// The sampler of a name as the properties call it: run(D, z, sigmas), with what is to happen after each step or
 /// without.
 struct sampler_by_name {
-    sampler method;
+    sampler_kind method;
 
     template <class Denoise, class Latents, class Sigmas, class... AfterStep>
     Latents operator()(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&&... after_step) const {

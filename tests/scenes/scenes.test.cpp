@@ -3,7 +3,7 @@
 #include <examples/scenes/scenes.hpp>
 
 #include <genrender/scene/rasterizer.hpp>
-#include <genrender/guidance/uv_report.hpp>
+#include <genrender/maps/uv_report.hpp>
 #include <genrender/scene/uv_overlap.hpp>
 
 #include <doctest/doctest.h>

@@ -47,9 +47,9 @@ struct analytic_denoiser {
     Real attention = 0;
     std::size_t guidance_branches = 1;
     std::vector<attention_site> site_list = {
-        {"encoder.attn1", network_kind::denoiser, network_part::encoder, grid, channels},
+        {"encoder.attn1", network_kind::denoising, network_part::encoder, grid, channels},
         {"control.attn1", network_kind::control, network_part::decoder, grid, channels},
-        {"decoder.attn1", network_kind::denoiser, network_part::decoder, grid, channels}};
+        {"decoder.attn1", network_kind::denoising, network_part::decoder, grid, channels}};
 
     std::size_t latent_channels() const { return channels; }
     grid_extents latent_grid() const { return grid; }

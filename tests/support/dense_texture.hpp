@@ -4,7 +4,7 @@
 #pragma once
 
 #include <genrender/core/stack.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <algorithm>
 #include <cmath>

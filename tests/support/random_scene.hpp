@@ -3,7 +3,7 @@
 #pragma once
 
 #include <genrender/core/random.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 // What every sequence_method owes beyond its concept, as checks for the library's models and for users' own.
 #pragma once
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <genrender/pipeline/render.hpp>
 
 #include <doctest/doctest.h>
@@ -35,7 +35,7 @@ latents<typename Phi::real_type> check_sequence_method_laws(Method const& method
         return true;
     });
     for (std::size_t step = 0; step < settings.steps; ++step) {
-        auto const evaluations = settings.method == sampler::heun && step > 0 ? 2U : 1U;
+        auto const evaluations = settings.sampler == sampler_kind::heun && step > 0 ? 2U : 1U;
         REQUIRE(frames[step] == evaluations * N);
         REQUIRE(keyframes[step] == evaluations * method.keyframes(settings, N, step).size());
     }

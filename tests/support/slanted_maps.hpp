@@ -2,7 +2,7 @@
 // UV maps of one slanted surface before a background, without defects; what has one starts from them.
 #pragma once
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <cstddef>
 

@@ -2,7 +2,7 @@
 // UV maps written as pictures: a letter names the object of a map pixel, a point is background.
 #pragma once
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <cstddef>
 #include <string>

@@ -25,9 +25,9 @@ struct wide_denoiser {
 
     static constexpr grid_extents grid{8, 8};
     static constexpr std::size_t channels = 64;
-    std::array<attention_site, 3> modules{{{"in", network_kind::denoiser, network_part::encoder, grid, channels},
-                                           {"out.0", network_kind::denoiser, network_part::decoder, grid, channels},
-                                           {"out.1", network_kind::denoiser, network_part::decoder, grid, channels}}};
+    std::array<attention_site, 3> modules{{{"in", network_kind::denoising, network_part::encoder, grid, channels},
+                                           {"out.0", network_kind::denoising, network_part::decoder, grid, channels},
+                                           {"out.1", network_kind::denoising, network_part::decoder, grid, channels}}};
     mutable std::atomic<std::size_t> attention_flops{0}; ///< of all calls so far, 4 N N_kv C
 
     std::size_t latent_channels() const { return 4; }

@@ -15,8 +15,8 @@ namespace genrender {
 
 /// Which of the networks that a denoiser runs holds a self-attention module.
 enum class network_kind : std::uint8_t {
-    denoiser, ///< the network that predicts the latents
-    control   ///< a ControlNet or the like beside it, whose attention is usually left alone
+    denoising, ///< the network that predicts the latents
+    control    ///< a ControlNet or the like beside it, whose attention is usually left alone
 };
 
 /// Which part of the network holds it.
@@ -25,7 +25,7 @@ enum class network_part : std::uint8_t { encoder, middle, decoder };
 /// One self-attention module of a denoiser, described once for all calls.
 struct attention_site {
     std::string name; ///< as the engine calls it, say `up_blocks.1.attentions.0.transformer_blocks.0.attn1`
-    network_kind network = network_kind::denoiser;
+    network_kind network = network_kind::denoising;
     network_part part = network_part::decoder;
     grid_extents grid; ///< of its feature map; tokens are row * width + column
     std::size_t channels = 0;

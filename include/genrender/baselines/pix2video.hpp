@@ -36,26 +36,26 @@ struct pix2video {
     }
 
     /// Estimates all frames; outside the window every frame by itself.
-    template <class Evaluation>
-    void operator()(Evaluation const& evaluation) const {
-        using features_type = typename Evaluation::features_type;
-        auto const& settings = evaluation.settings();
-        if (!is_in_window(evaluation.step(), settings.steps, settings.window_begin, settings.window_end)) {
-            evaluation.denoise_frames_alone();
+    template <class Passes>
+    void operator()(Passes const& passes) const {
+        using features_type = typename Passes::features_type;
+        auto const& settings = passes.settings();
+        if (!is_in_window(passes.step(), settings.steps, settings.window_begin, settings.window_end)) {
+            passes.denoise_frames_alone();
             return;
         }
         earlier_frames<features_type> earlier;
-        auto latest = evaluation.new_bank();
+        auto latest = passes.new_bank();
         std::size_t latest_count = 0;
-        evaluation.denoise_frames_in_order([&](std::span<frame_index const> frames) {
+        passes.denoise_frames_in_order([&](std::span<frame_index const> frames) {
             if (latest_count > 0) {
-                earlier.add(std::exchange(latest, evaluation.new_bank()), latest_count);
+                earlier.add(std::exchange(latest, passes.new_bank()), latest_count);
             }
             latest_count = frames.size();
             return previous_frame_attention<features_type>(
-                earlier, latest, [&evaluation](attention_place place) { return evaluation.takes_part(place); });
+                earlier, latest, [&passes](attention_place place) { return passes.takes_part(place); });
         });
-        evaluation.require_recorded(latest, "frames");
+        passes.require_recorded(latest, "frames");
     }
 };
 

@@ -43,22 +43,22 @@ struct tokenflow {
 
     /// Estimates all frames; outside the window every frame by itself. A keyframe runs again with the others and takes
     /// its own outputs, which gives the estimate of the keyframes' pass.
-    template <class Evaluation>
-    void operator()(Evaluation const& evaluation) const {
-        using real_type = typename Evaluation::real_type;
-        auto const KF = keyframes(evaluation.settings(), evaluation.frame_count(), evaluation.step());
+    template <class Passes>
+    void operator()(Passes const& passes) const {
+        using real_type = typename Passes::real_type;
+        auto const KF = keyframes(passes.settings(), passes.frame_count(), passes.step());
         if (KF.empty()) {
-            evaluation.denoise_frames_alone();
+            passes.denoise_frames_alone();
             return;
         }
-        auto const bank = evaluation.record_keyframes(KF, true);
-        evaluation.denoise_frames([&](std::span<frame_index const> frames) {
-            auto const rows = evaluation.plan_rows(frames, [&](auto const& map, frame_index i) {
+        auto const bank = passes.record_keyframes(KF, true);
+        passes.denoise_frames([&](std::span<frame_index const> frames) {
+            auto const rows = passes.plan_rows(frames, [&](auto const& map, frame_index i) {
                 auto propagation = make_propagation_plan<real_type>(map, KF, i);
-                evaluation.report_coverage(map, i, propagation.matched);
+                passes.report_coverage(map, i, propagation.matched);
                 return std::move(propagation.plan);
             });
-            return token_propagation<typename Evaluation::features_type, real_type>(bank, rows);
+            return token_propagation<typename Passes::features_type, real_type>(bank, rows);
         });
     }
 };

@@ -8,13 +8,13 @@
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
-#include <genrender/correspondence/kept_frame.hpp>
-#include <genrender/correspondence/recent_frames.hpp>
+#include <genrender/correspondence/frame_samples.hpp>
+#include <genrender/correspondence/frame_cache.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/token_matches.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/guidance/cell_extents.hpp>
+#include <genrender/maps/canonical_maps.hpp>
+#include <genrender/maps/cell_extents.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -56,8 +56,8 @@ public:
         requires(Maps::dimensions == D)
     footprint_map(Maps const& maps, grid_extents grid, footprint_map_settings const& settings = {},
                   any_loop const& loop = {})
-        : grid_(grid), matches_(std::make_shared<kept_matches>(settings.kept_bytes)),
-          recent_(std::make_shared<recent_frames<kept_frame<D>>>(settings.kept_frames)) {
+        : grid_(grid), matches_(std::make_shared<match_cache>(settings.kept_bytes)),
+          recent_(std::make_shared<frame_cache<frame_samples<D>>>(settings.kept_frames)) {
         require_value(settings.reach > 0, "footprint_map", "settings.reach", settings.reach, "a number above 0");
         cell_extents("footprint_map", maps.grid(), grid);
         auto const source = std::make_shared<source_of<Maps>>(maps, grid, settings.reach);
@@ -116,7 +116,7 @@ public:
     }
 
 private:
-    using speaker_type = typename kept_samples<D>::speaker;
+    using speaker_type = typename object_samples<D>::speaker;
 
     /// The pixels that stand for the tokens of a frame.
     struct representatives {
@@ -129,7 +129,7 @@ private:
         virtual ~source_type() = default;
         virtual std::size_t frame_count() const = 0;
         virtual std::optional<point_type> point_at(frame_index i, token_index token) const = 0;
-        virtual kept_frame<D> keep(frame_index i) const = 0;
+        virtual frame_samples<D> keep(frame_index i) const = 0;
     };
 
     template <canonical_maps Maps>
@@ -161,7 +161,7 @@ private:
                      : std::nullopt;
         }
 
-        kept_frame<D> keep(frame_index i) const override {
+        frame_samples<D> keep(frame_index i) const override {
             return {maps_, i, grid_, reach_, [&](token_index token) { return representative_of(i, token); }};
         }
 
@@ -189,7 +189,7 @@ private:
         std::vector<representatives> representatives_; ///< [frames]
     };
 
-    std::shared_ptr<kept_frame<D> const> kept(frame_index i) const {
+    std::shared_ptr<frame_samples<D> const> kept(frame_index i) const {
         return recent_->of(i, [&] { return source_->keep(i); });
     }
 
@@ -200,10 +200,10 @@ private:
         return number ? std::optional(samples->speaker_of(*number)) : std::nullopt;
     }
 
-    static token_matches match(std::vector<std::optional<point_type>> const& points, kept_frame<D> const& to) {
+    static token_matches match(std::vector<std::optional<point_type>> const& points, frame_samples<D> const& to) {
         // First who shows what, then who that is: reading the latter would wait for memory, one token after the other.
         struct finding {
-            kept_samples<D> const* samples;
+            object_samples<D> const* samples;
             std::uint32_t number;
             std::uint32_t token;
         };
@@ -229,8 +229,8 @@ private:
     grid_extents grid_;
     std::shared_ptr<source_type const> source_;
     // Shared by copies, for which all is the same.
-    std::shared_ptr<kept_matches> matches_;
-    std::shared_ptr<recent_frames<kept_frame<D>>> recent_;
+    std::shared_ptr<match_cache> matches_;
+    std::shared_ptr<frame_cache<frame_samples<D>>> recent_;
 };
 
 /// Deduces the dimensions from the maps.

@@ -4,8 +4,8 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/guidance/cell_extents.hpp>
+#include <genrender/maps/canonical_maps.hpp>
+#include <genrender/maps/cell_extents.hpp>
 
 #include <algorithm>
 #include <cstddef>

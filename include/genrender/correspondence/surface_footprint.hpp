@@ -5,7 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/finite.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 
 #include <algorithm>
 #include <array>

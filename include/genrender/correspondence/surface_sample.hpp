@@ -8,7 +8,7 @@
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/texture_resolution.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 
 #include <algorithm>
 #include <array>

@@ -40,12 +40,12 @@ struct token_matches {
 
 /// Matches of pairs of frames, which never change in a run and are asked for again whenever a frame is drawn as a
 /// keyframe again. Keeps those that came first, up to a number of bytes; may be used from several threads.
-class kept_matches {
+class match_cache {
 public:
     /// Bytes of a chunk of memory, about: it holds the matches of whole pairs, of one at least.
     static constexpr std::size_t chunk_bytes = std::size_t{512} << 10;
 
-    explicit kept_matches(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+    explicit match_cache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
     /// The matches of a pair, made by `make()` unless they are kept.
     template <class Make>

@@ -5,8 +5,8 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/index.hpp>
-#include <genrender/guidance/cell_extents.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/cell_extents.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 
 #include <array>
 #include <concepts>

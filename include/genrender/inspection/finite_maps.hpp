@@ -6,7 +6,7 @@
 
 #include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 
 #include <array>
 #include <cstddef>

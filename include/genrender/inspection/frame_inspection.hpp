@@ -6,7 +6,7 @@
 
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 #include <genrender/inspection/object_check.hpp>
 #include <genrender/inspection/pixel_check.hpp>
 #include <genrender/inspection/pixel_lattice.hpp>

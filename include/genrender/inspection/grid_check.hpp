@@ -8,7 +8,7 @@
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 #include <genrender/inspection/pixel_lattice.hpp>
 #include <genrender/inspection/screen_search.hpp>
 

@@ -6,7 +6,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/parallel.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 #include <genrender/inspection/frame_inspection.hpp>
 #include <genrender/inspection/object_check.hpp>
 

@@ -7,7 +7,7 @@
 
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 #include <genrender/inspection/screen_search.hpp>
 
 #include <algorithm>

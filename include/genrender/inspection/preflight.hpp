@@ -6,8 +6,8 @@
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
-#include <genrender/correspondence/surface_correspondence.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/correspondence/chosen_correspondence.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 #include <genrender/inspection/finite_maps.hpp>
 #include <genrender/inspection/grid_check.hpp>
 #include <genrender/inspection/map_check.hpp>
@@ -109,7 +109,7 @@ void check_grids(preflight_report& report, Maps const& maps, correspondence_sett
     kept.footprint.kept_frames = std::max(kept.footprint.kept_frames, drawn.size());
     for (auto& check : report.grids) {
         try {
-            surface_correspondence<Maps::dimensions> const map(maps, check.grid, kept, loop);
+            chosen_correspondence<Maps::dimensions> const map(maps, check.grid, kept, loop);
             check = check_grid(map, maps, report.maps.looked_at, report.keyframes, searches, tokens, loop);
         } catch (value_error const& refusal) {
             check.refusal = refusal.what();

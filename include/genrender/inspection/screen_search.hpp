@@ -7,7 +7,7 @@
 #include <genrender/core/finite.hpp>
 #include <genrender/correspondence/sample_tree.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 #include <genrender/inspection/pixel_lattice.hpp>
 
 #include <algorithm>

@@ -7,8 +7,8 @@
 #include <genrender/core/random.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/guidance/cell_extents.hpp>
+#include <genrender/maps/canonical_maps.hpp>
+#include <genrender/maps/cell_extents.hpp>
 #include <genrender/noise/background_noise.hpp>
 #include <genrender/noise/noise_tree.hpp>
 

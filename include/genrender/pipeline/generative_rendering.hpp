@@ -46,31 +46,31 @@ struct generative_rendering {
     }
 
     /// The body of Alg. 1's loop.
-    template <class Evaluation>
-    void operator()(Evaluation const& evaluation) const {
-        using real_type = typename Evaluation::real_type;
-        using injector_type = injector<typename Evaluation::features_type, real_type>;
-        auto const& settings = evaluation.settings();
-        auto const KF = keyframes(settings, evaluation.frame_count(), evaluation.step());
+    template <class Passes>
+    void operator()(Passes const& passes) const {
+        using real_type = typename Passes::real_type;
+        using injector_type = injector<typename Passes::features_type, real_type>;
+        auto const& settings = passes.settings();
+        auto const KF = keyframes(settings, passes.frame_count(), passes.step());
         if (KF.empty()) {
-            evaluation.denoise_frames_alone();
+            passes.denoise_frames_alone();
             return;
         }
         // f_KF, F_KF <- Phi(z_KF, D_KF, c)
-        auto const bank = evaluation.record_keyframes(KF, settings.pre_attention);
+        auto const bank = passes.record_keyframes(KF, settings.pre_attention);
 
         // z^i <- Phi(z^i, D^i, c, f_KF, F_bar^i), F_bar^i = pi_i(T_bar_KF)
         injection_settings<real_type> injection;
         injection.pre_attention = settings.pre_attention;
         injection.post_attention = settings.post_attention;
         injection.keeps_own_copy = settings.keeps_own_copy;
-        injection.alpha = [&evaluation](site_index site) { return evaluation.alpha(site); };
-        evaluation.denoise_frames([&](std::span<frame_index const> frames) {
+        injection.alpha = [&passes](site_index site) { return passes.alpha(site); };
+        passes.denoise_frames([&](std::span<frame_index const> frames) {
             typename injector_type::rows_of rows;
             if (settings.post_attention) {
-                rows = evaluation.plan_rows(frames, [&](auto const& map, frame_index i) {
+                rows = passes.plan_rows(frames, [&](auto const& map, frame_index i) {
                     auto plan = make_blend_plan<real_type>(map, KF, i, settings.first_fill_share, settings.average);
-                    evaluation.report_coverage(map, i, plan.covered_count());
+                    passes.report_coverage(map, i, plan.covered_count());
                     return plan;
                 });
             }

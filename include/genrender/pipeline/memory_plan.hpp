@@ -81,12 +81,12 @@ matching_bytes matching_of(run_description const& run, footprint_map_settings co
     }
     matching_bytes bytes;
     for (auto const count : pixels) {
-        bytes.kept += kept_frame<D>::expected_bytes(count, cell);
-        bytes.making += kept_frame<D>::making_bytes(count, cell);
+        bytes.kept += frame_samples<D>::expected_bytes(count, cell);
+        bytes.making += frame_samples<D>::making_bytes(count, cell);
     }
     auto const kept_frames = std::min(std::max(settings.kept_frames, keyframes), ever_keyframes);
     bytes.kept = bytes.kept / run.frames * kept_frames +
-                 kept_matches::expected_bytes(run.frames * ever_keyframes, grid.size(), settings.kept_bytes);
+                 match_cache::expected_bytes(run.frames * ever_keyframes, grid.size(), settings.kept_bytes);
     bytes.making /= run.frames;
     return bytes;
 }
@@ -100,11 +100,11 @@ inline std::size_t texel_bytes(run_description const& run, grid_extents grid) {
 }
 
 /// Stacks of the latents' size that live while D is evaluated; updates between evaluations add none.
-inline std::size_t latent_stacks(sampler method) {
-    switch (method) {
-    case sampler::heun:
+inline std::size_t latent_stacks(sampler_kind sampler) {
+    switch (sampler) {
+    case sampler_kind::heun:
         return 4;
-    case sampler::dpmpp_2m:
+    case sampler_kind::dpmpp_2m:
         return 3;
     default:
         return 2;
@@ -129,7 +129,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     std::size_t m = 0;
     std::set<frame_index> ever_keyframes;
     for (std::size_t step = 0; step < settings.steps; ++step) {
-        auto const of_step = settings.method == sampler::heun && step > 0 ? std::size_t{2} : std::size_t{1};
+        auto const of_step = settings.sampler == sampler_kind::heun && step > 0 ? std::size_t{2} : std::size_t{1};
         auto const drawn = method.keyframes(settings, run.frames, step);
         evaluations += of_step;
         with_keyframes += drawn.empty() ? 0 : of_step;
@@ -177,7 +177,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
 
     // What grows with the frames.
     auto const latent_bytes = run.latent_channels * run.latent_grid.size() * sizeof(Real);
-    bytes.latents = detail::latent_stacks(settings.method) * run.frames * latent_bytes;
+    bytes.latents = detail::latent_stacks(settings.sampler) * run.frames * latent_bytes;
     bytes.maps = run.frames * run.map_grid.size() * (run.map_dimensions * sizeof(float) + 5);
     bytes.background = run.frames * run.latent_grid.size();
     auto const by_texels = settings.correspondence.kind == correspondence_kind::texel_grid;

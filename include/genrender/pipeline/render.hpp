@@ -6,7 +6,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/finite.hpp>
-#include <genrender/guidance/background_mask.hpp>
+#include <genrender/maps/background_mask.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 
@@ -42,7 +42,7 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
                   "settings.first_fill_share", settings.first_fill_share, "a share in [0, 1]");
     require_value(settings.layers != nullptr, "render", "settings.layers", "empty", "a function");
     require_value(settings.alpha != nullptr, "render", "settings.alpha", "empty", "a function");
-    evaluations(settings.method, settings.steps);
+    evaluations(settings.sampler, settings.steps);
 }
 
 /// Throws value_error naming the first covered pixel whose canonical coordinates are not finite.
@@ -73,7 +73,7 @@ std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t
     std::size_t total = 0;
     for (std::size_t step = 0; step < settings.steps; ++step) {
         // Heun's second evaluation is at the level at which the next step begins.
-        auto const evaluations = settings.method == sampler::heun && step > 0 ? 2U : 1U;
+        auto const evaluations = settings.sampler == sampler_kind::heun && step > 0 ? 2U : 1U;
         total += evaluations * (frames + method.keyframes(settings, frames, step).size());
     }
     return total;
@@ -90,7 +90,7 @@ using map_made_by = std::invoke_result_t<MakeMap const&, grid_extents>;
 /// Throws value_error or shape_error for arguments that do not fit, before anything is run; cancelled if the observer
 /// ends the run; what the denoiser throws.
 template <denoiser Phi, canonical_maps Maps, class MakeMap,
-          sequence_method<sequence_evaluation<Phi, map_made_by<MakeMap>>> Method>
+          sequence_method<sequence_passes<Phi, map_made_by<MakeMap>>> Method>
 latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV, MakeMap const& make_map,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, any_loop const& loop = {}) {
@@ -143,17 +143,17 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
             D.normalize(z_next, step);
         }
     };
-    return sample(settings.method, denoise, std::move(z), sigmas, normalize);
+    return sample(settings.sampler, denoise, std::move(z), sigmas, normalize);
 }
 
 /// The same with the correspondence that `settings.correspondence` chooses.
 template <denoiser Phi, canonical_maps Maps,
-          sequence_method<sequence_evaluation<Phi, surface_correspondence<Maps::dimensions>>> Method>
+          sequence_method<sequence_passes<Phi, chosen_correspondence<Maps::dimensions>>> Method>
 latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV,
                                         render_settings<typename Phi::real_type> const& settings, render_report& report,
                                         progress_observer observer = {}, any_loop const& loop = {}) {
     auto const make_map = [&](grid_extents grid) {
-        return surface_correspondence<Maps::dimensions>(UV, grid, settings.correspondence, loop);
+        return chosen_correspondence<Maps::dimensions>(UV, grid, settings.correspondence, loop);
     };
     return render(method, phi, UV, make_map, settings, report, std::move(observer), loop);
 }

@@ -7,7 +7,7 @@
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/blend_plan.hpp>
-#include <genrender/correspondence/surface_correspondence.hpp>
+#include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/noise/initial_noise.hpp>
 #include <genrender/normalization/adain.hpp>
@@ -23,7 +23,7 @@ namespace genrender {
 /// Which self-attention modules take part: all of the denoising network's decoder, in every guidance branch. The
 /// encoder and a ControlNet stay as they are.
 inline bool is_in_decoder(attention_site const& site, std::uint32_t /*branch*/) {
-    return site.network == network_kind::denoiser && site.part == network_part::decoder;
+    return site.network == network_kind::denoising && site.part == network_part::decoder;
 }
 
 /// Settings of one run of Alg. 1, or of another sequence_method, which says what it leaves unread.
@@ -33,7 +33,7 @@ struct render_settings {
     Real sigma_min = Real(0.0292);  ///< lowest noise level before 0 (Stable Diffusion's)
     Real sigma_max = Real(14.6146); ///< noise level of the initial latents
     Real rho = 7;                   ///< spacing of the levels [EDM eq. 5]
-    sampler method = sampler::euler;
+    sampler_kind sampler = sampler_kind::euler;
 
     noise_settings noise;                   ///< sec. 3.3
     keyframe_settings keyframes;            ///< alg. 1: KF

@@ -6,7 +6,7 @@
 
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/index.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 #include <genrender/sampling/denoiser.hpp>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 #include <genrender/core/finite.hpp>
 #include <genrender/normalization/adain.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
-#include <genrender/pipeline/sequence_evaluation.hpp>
+#include <genrender/pipeline/sequence_passes.hpp>
 #include <genrender/pipeline/sequence_method.hpp>
 
 #include <chrono>
@@ -34,7 +34,7 @@ std::size_t step_at(std::span<Real const> sigmas, std::type_identity_t<Real> sig
 /// D(z, sigma) of a whole animation: a method's estimates of all frames, normalised. Any sampler drives it; it keeps
 /// nothing from one evaluation to the next, and what it draws depends on the seed and the noise level alone.
 template <denoiser Phi, correspondence_map Map,
-          sequence_method<sequence_evaluation<Phi, Map>> Method = generative_rendering>
+          sequence_method<sequence_passes<Phi, Map>> Method = generative_rendering>
 class sequence_denoiser {
 public:
     using real_type = typename Phi::real_type;
@@ -54,7 +54,7 @@ public:
     latents<real_type> operator()(latents<real_type> const& z, real_type sigma) const {
         auto const step = step_at(sigmas_, sigma);
         auto x0 = latents<real_type>::from_shape(z.shape());
-        method_(sequence_evaluation<Phi, Map>(run_, x0, z, sigma, step));
+        method_(sequence_passes<Phi, Map>(run_, x0, z, sigma, step));
         require_finite(x0, step);
         auto const& normalization = run_.settings->normalization;
         if (normalization.enabled && !normalization.on_noisy_latents) {

@@ -13,8 +13,8 @@
 
 namespace genrender {
 
-/// Denoises all frames of an animation at one noise level by passes of an evaluation. Everything else of a run is the
-/// same for every method: initial noise, noise levels, sampler, latent normalisation, progress and report.
+/// Denoises all frames of an animation at one noise level by its passes. Everything else of a run is the same
+/// for every method: initial noise, noise levels, sampler, latent normalisation, progress and report.
 ///
 /// expression                                   | type                | meaning
 /// ---------------------------------------------|---------------------|-----------------------------------------------
@@ -24,8 +24,8 @@ namespace genrender {
 ///                                              |                     | the settings do not fit
 /// `method.uses_correspondence(settings)`       | bool                | whether correspondence maps are to be compiled
 ///                                              |                     | for the sites that take part
-/// `method(evaluation)`                         | void                | writes the clean estimates of all frames by
-///                                              |                     | passes of the sequence_evaluation
+/// `method(passes)`                             | void                | writes the clean estimates of all frames by
+///                                              |                     | the passes of a sequence_passes
 ///
 /// These the compiler cannot check, and a model owes them (tests/support/sequence_method_laws.hpp): every evaluation
 /// runs the keyframes it announced and every frame once; estimates depend neither on the loop nor on
@@ -33,15 +33,15 @@ namespace genrender {
 /// evaluation to the next, and what is drawn depends on the settings' seeds and the step alone.
 /// It does not require to read all settings; each model says which it leaves unread.
 ///
-/// See also: generative_rendering, the paper's method; pix2video and tokenflow, its baselines; sequence_evaluation,
+/// See also: generative_rendering, the paper's method; pix2video and tokenflow, its baselines; sequence_passes,
 /// what it is given.
-template <class Method, class Evaluation>
+template <class Method, class Passes>
 concept sequence_method = std::copyable<Method> &&
-    requires(Method const& method, Evaluation const& evaluation,
-             render_settings<typename Evaluation::real_type> const& settings, std::size_t number) {
+    requires(Method const& method, Passes const& passes, render_settings<typename Passes::real_type> const& settings,
+             std::size_t number) {
     { method.keyframes(settings, number, number) } -> std::same_as<std::vector<frame_index>>;
     { method.uses_correspondence(settings) } -> std::convertible_to<bool>;
-    { method(evaluation) } -> std::same_as<void>;
+    { method(passes) } -> std::same_as<void>;
 };
 
 } // namespace genrender

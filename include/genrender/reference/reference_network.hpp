@@ -61,7 +61,7 @@ public:
         site_list sites(latent_grid_);
         sites.begin(network_kind::control);
         control_ = std::make_shared<controlnet<Real> const>(config_, control_weights, sites);
-        sites.begin(network_kind::denoiser);
+        sites.begin(network_kind::denoising);
         unet_ = std::make_shared<unet<Real> const>(config_, unet_weights, sites);
         sites_.assign(sites.sites().begin(), sites.sites().end());
         hints_ = {control_, std::exchange(conditioning_.hint, {}), hint_bytes, loop_};

@@ -36,7 +36,7 @@ public:
 
 private:
     grid_extents latent_grid_;
-    network_kind network_ = network_kind::denoiser;
+    network_kind network_ = network_kind::denoising;
     std::vector<attention_site> sites_;
 };
 

@@ -17,7 +17,7 @@
 namespace genrender {
 
 /// A deterministic sampler.
-enum class sampler {
+enum class sampler_kind {
     euler,   ///< first order, one evaluation a step
     heun,    ///< second order, two evaluations a step
     dpmpp_2m ///< second order, one evaluation a step and the memory of another
@@ -27,31 +27,31 @@ enum class sampler {
 /// dpmpp_2m. Throws as they do, and value_error for a value that names none.
 template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
     requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
-Latents sample(sampler method, Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
-    switch (method) {
-    case sampler::euler:
+Latents sample(sampler_kind sampler, Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+    switch (sampler) {
+    case sampler_kind::euler:
         return euler(D, std::move(z), sigmas, after_step);
-    case sampler::heun:
+    case sampler_kind::heun:
         return heun(D, std::move(z), sigmas, after_step);
-    case sampler::dpmpp_2m:
+    case sampler_kind::dpmpp_2m:
         return dpmpp_2m(D, std::move(z), sigmas, after_step);
     }
-    throw value_error("sample: method is " + std::to_string(static_cast<int>(method)) +
+    throw value_error("sample: sampler is " + std::to_string(static_cast<int>(sampler)) +
                       ", expected euler, heun or dpmpp_2m");
 }
 
 /// How often a run of `steps` steps that ends at level 0, such as karras_schedule(steps), evaluates D. Throws
 /// value_error for 0 steps or a value that names no sampler.
-inline std::size_t evaluations(sampler method, std::size_t steps) {
+inline std::size_t evaluations(sampler_kind sampler, std::size_t steps) {
     require_value(steps >= 1, "evaluations", "steps", steps, "at least 1");
-    switch (method) {
-    case sampler::euler:
-    case sampler::dpmpp_2m:
+    switch (sampler) {
+    case sampler_kind::euler:
+    case sampler_kind::dpmpp_2m:
         return steps;
-    case sampler::heun:
+    case sampler_kind::heun:
         return 2 * steps - 1;
     }
-    throw value_error("evaluations: method is " + std::to_string(static_cast<int>(method)) +
+    throw value_error("evaluations: sampler is " + std::to_string(static_cast<int>(sampler)) +
                       ", expected euler, heun or dpmpp_2m");
 }
 

@@ -8,10 +8,10 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/guidance/depth_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
+#include <genrender/maps/depth_maps.hpp>
 #include <genrender/scene/frame_rasterizer.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <genrender/scene/animation.hpp>
 
 #include <cstddef>

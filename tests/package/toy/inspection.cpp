@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A program of somebody who looks at his maps: every pixel is background, which is found.
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <genrender/inspection.hpp>
 
 #include <iostream>

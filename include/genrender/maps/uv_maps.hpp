@@ -6,7 +6,7 @@
 
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 
 #include <cstdint>
 

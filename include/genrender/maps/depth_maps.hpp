@@ -7,7 +7,7 @@
 #include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/cell_extents.hpp>
+#include <genrender/maps/cell_extents.hpp>
 
 #include <algorithm>
 #include <cstdint>

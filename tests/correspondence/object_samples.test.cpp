@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Of the kept pixels the closest on the screen shows a point; in a moment or by way of the tree, the same one.
-#include <genrender/correspondence/kept_samples.hpp>
+#include <genrender/correspondence/object_samples.hpp>
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ using namespace genrender;
 
 namespace {
 
-using samples_type = kept_samples<2>;
+using samples_type = object_samples<2>;
 
 /// Pixel (row, column) of a plane on which pixels are 1/64 apart, in cells of 4 x 4.
 samples_type::sample plane_sample(std::uint32_t row, std::uint32_t column) {
@@ -45,7 +45,7 @@ footprint_point<2> point_at(float u, float v) {
 
 } // namespace
 
-TEST_SUITE("correspondence/kept_samples") {
+TEST_SUITE("correspondence/object_samples") {
     TEST_CASE("a sample is the one that the tree finds wherever the point lies") {
         auto const kept = plane(1);
         std::size_t shown = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // UV maps are canonical maps of two coordinates, those of the texture; the rest is in canonical_maps.test.cpp.
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/stack.hpp>
@@ -11,7 +11,7 @@
 #include <concepts>
 #include <cstdint>
 
-TEST_SUITE("guidance/uv_maps_view") {
+TEST_SUITE("maps/uv_maps_view") {
     using namespace genrender;
 
     static_assert(std::same_as<uv_maps_view, canonical_maps_view<2>>);

@@ -47,7 +47,7 @@ struct sequence_run {
 /// The passes over an animation at one noise level. A pass gives the denoiser stacks of frames with a processor, counts
 /// them for the observer and its seconds for the report; the method decides on passes and processors.
 template <denoiser Phi, correspondence_map Map>
-class sequence_evaluation {
+class sequence_passes {
 public:
     using real_type = typename Phi::real_type;
     using features_type = typename Phi::features_type;
@@ -56,8 +56,8 @@ public:
 
     /// Reads z and writes the clean estimates x0, both [frames, channels, height, width]. Everything is referred to and
     /// must outlive the evaluation.
-    sequence_evaluation(sequence_run<Phi, Map> const& run, latents<real_type>& x0, latents<real_type> const& z,
-                        real_type sigma, std::size_t step)
+    sequence_passes(sequence_run<Phi, Map> const& run, latents<real_type>& x0, latents<real_type> const& z,
+                    real_type sigma, std::size_t step)
         : run_(&run), x0_(&x0), z_(&z), sigma_(sigma), step_(step) {}
 
     render_settings<real_type> const& settings() const { return *run_->settings; }

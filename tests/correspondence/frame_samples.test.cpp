@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A frame keeps of every cell and object the pixels nearest to the middles of the cell's parts.
-#include <genrender/correspondence/kept_frame.hpp>
+#include <genrender/correspondence/frame_samples.hpp>
 
 #include "../support/random_scene.hpp"
 #include "../support/small_maps.hpp"
@@ -20,7 +20,7 @@ using namespace genrender;
 namespace {
 
 template <class Maps>
-kept_frame<2> kept(Maps const& maps, grid_extents grid) {
+frame_samples<2> kept(Maps const& maps, grid_extents grid) {
     return {maps, {0}, grid, 1, [&](token_index token) { return representative_pixel(maps, {0}, grid, token); }};
 }
 
@@ -43,7 +43,7 @@ footprint_point<2> place(float u, float v) {
 
 } // namespace
 
-TEST_SUITE("correspondence/kept_frame") {
+TEST_SUITE("correspondence/frame_samples") {
     TEST_CASE("every pixel of a small cell speaks, with the share of the cell and the pixels a unit of surface") {
         auto maps = plane();
         for (std::size_t row = 0; row < 4; ++row) {
@@ -112,7 +112,7 @@ TEST_SUITE("correspondence/kept_frame") {
         auto maps = plane();
         maps.uv(0, 5, 5, 1) = std::numeric_limits<float>::quiet_NaN();
         CHECK_THROWS_WITH_AS(kept(to_uv_view(maps), {4, 4}),
-                             "kept_frame: maps is nan, expected finite canonical coordinates", value_error);
+                             "frame_samples: maps is nan, expected finite canonical coordinates", value_error);
     }
 
     TEST_CASE("a surface too small for numbers has the greatest quality and one without neighbours none") {

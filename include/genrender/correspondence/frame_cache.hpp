@@ -19,10 +19,10 @@ namespace genrender {
 /// Values that are made of single frames, kept of those that were asked for last. May be used from several threads,
 /// which wait long for each other only where they ask for the same frame.
 template <class Value>
-class recent_frames {
+class frame_cache {
 public:
     /// Keeps at most so many, and one at least.
-    explicit recent_frames(std::size_t most) : most_(std::max<std::size_t>(most, 1)) {}
+    explicit frame_cache(std::size_t most) : most_(std::max<std::size_t>(most, 1)) {}
 
     /// Makes room for so many, for one who asks for them in turn: with less room none would ever be found.
     void keep_at_least(std::size_t most) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // [GR alg. 1: the body of the loop] The passes one by one.
-#include <genrender/pipeline/sequence_evaluation.hpp>
+#include <genrender/pipeline/sequence_passes.hpp>
 
 #include "../support/analytic_denoiser.hpp"
 #include "../support/shifted_strip.hpp"
@@ -36,7 +36,7 @@ struct strip_run {
     sequence_run<analytic_denoiser<double>, shifted_strip> run{&phi, &maps, &settings, loop, &meter, &report};
     latents<double> z = latents<double>::from_shape({5, 3, 1, 4});
     latents<double> x0 = latents<double>::from_shape({5, 3, 1, 4});
-    sequence_evaluation<analytic_denoiser<double>, shifted_strip> evaluation{run, x0, z, 0.5, 2};
+    sequence_passes<analytic_denoiser<double>, shifted_strip> passes{run, x0, z, 0.5, 2};
 
     strip_run() {
         settings.steps = 4;
@@ -51,19 +51,19 @@ struct strip_run {
 
 } // namespace
 
-TEST_SUITE("pipeline/sequence_evaluation") {
+TEST_SUITE("pipeline/sequence_passes") {
     TEST_CASE("it tells where it is") {
         strip_run world;
         world.settings.alpha = [](std::size_t step, attention_site const& site) {
             return static_cast<double>(step) + (site.name == "decoder.attn1" ? 0.5 : 0);
         };
-        CHECK(world.evaluation.step() == 2);
-        CHECK(world.evaluation.frame_count() == 5);
-        CHECK(world.evaluation.settings().steps == 4);
-        CHECK(world.evaluation.alpha({2}) == 2.5);
-        CHECK(world.evaluation.takes_part({{2}, 1}));
-        CHECK(!world.evaluation.takes_part({{1}, 1})); // a ControlNet's
-        CHECK(!world.evaluation.takes_part({{0}, 0})); // the encoder's
+        CHECK(world.passes.step() == 2);
+        CHECK(world.passes.frame_count() == 5);
+        CHECK(world.passes.settings().steps == 4);
+        CHECK(world.passes.alpha({2}) == 2.5);
+        CHECK(world.passes.takes_part({{2}, 1}));
+        CHECK(!world.passes.takes_part({{1}, 1})); // a ControlNet's
+        CHECK(!world.passes.takes_part({{0}, 0})); // the encoder's
     }
     TEST_CASE("frames are denoised once each whatever number is denoised at once") {
         for (auto const frames_per_call : {1, 2, 5, 9}) {
@@ -71,7 +71,7 @@ TEST_SUITE("pipeline/sequence_evaluation") {
             world.settings.frames_per_call = static_cast<std::size_t>(frames_per_call);
             std::atomic<std::size_t> frames{0};
             std::atomic<std::size_t> calls{0};
-            world.evaluation.denoise_frames([&](std::span<frame_index const> stack) {
+            world.passes.denoise_frames([&](std::span<frame_index const> stack) {
                 frames += stack.size();
                 ++calls;
                 return plain_attention{};
@@ -90,7 +90,7 @@ TEST_SUITE("pipeline/sequence_evaluation") {
         strip_run world;
         world.settings.frames_per_call = 2;
         std::vector<frame_index> seen; // pushed to from one thread, or the thread sanitizer would find it
-        world.evaluation.denoise_frames_in_order([&](std::span<frame_index const> stack) {
+        world.passes.denoise_frames_in_order([&](std::span<frame_index const> stack) {
             CHECK(world.told.size() == (seen.size() + 1) / 2); // those before are done
             seen.insert(seen.end(), stack.begin(), stack.end());
             return plain_attention{};
@@ -99,7 +99,7 @@ TEST_SUITE("pipeline/sequence_evaluation") {
     }
     TEST_CASE("frames by themselves are what the denoiser makes of each alone") {
         strip_run world;
-        world.evaluation.denoise_frames_alone();
+        world.passes.denoise_frames_alone();
         plain_attention const plain;
         for (std::uint32_t i = 0; i < 5; ++i) {
             auto alone = latents<double>::from_shape({1, 3, 1, 4});
@@ -113,7 +113,7 @@ TEST_SUITE("pipeline/sequence_evaluation") {
     TEST_CASE("[GR alg. 1: f_KF, F_KF] keyframes are recorded in their drawn order where they take part") {
         strip_run world;
         std::vector<frame_index> const KF{{3}, {1}};
-        auto const bank = world.evaluation.record_keyframes(KF, true);
+        auto const bank = world.passes.record_keyframes(KF, true);
         CHECK(bank.find({{0}, 0}) == nullptr);
         CHECK(bank.find({{1}, 0}) == nullptr);
         auto const* const kept = bank.find({{2}, 1});
@@ -126,7 +126,7 @@ TEST_SUITE("pipeline/sequence_evaluation") {
         CHECK(world.told[0].pass == render_pass::keyframes);
         CHECK(world.told[0].frames_done == 2);
         CHECK(world.x0(3, 0, 0, 0) == 1e9); // estimates of keyframes are not kept
-        auto const apart = world.evaluation.record_keyframes(KF, false);
+        auto const apart = world.passes.record_keyframes(KF, false);
         CHECK(apart.find({{2}, 1})->F_KF->view()(0, 0, 0) != kept->F_KF->view()(0, 0, 0));
     }
     TEST_CASE("plans are made once for each resolution and frame and live as long as the rows") {
@@ -134,7 +134,7 @@ TEST_SUITE("pipeline/sequence_evaluation") {
         std::vector<frame_index> const frames{{1}, {4}};
         std::vector<frame_index> const KF{{0}};
         std::size_t made = 0;
-        auto const rows = world.evaluation.plan_rows(frames, [&](shifted_strip const& map, frame_index i) {
+        auto const rows = world.passes.plan_rows(frames, [&](shifted_strip const& map, frame_index i) {
             ++made;
             return make_blend_plan<double>(map, KF, i);
         });
@@ -146,19 +146,19 @@ TEST_SUITE("pipeline/sequence_evaluation") {
     }
     TEST_CASE("coverage is counted of the tokens that show an object") {
         strip_run world;
-        world.evaluation.report_coverage(world.maps.at({1, 4}), {2}, 3);
+        world.passes.report_coverage(world.maps.at({1, 4}), {2}, 3);
         CHECK(world.report.coverage().at({1, 4}).on_objects == 4);
         CHECK(world.report.coverage().at({1, 4}).covered == 3);
     }
     TEST_CASE("features that are missing are refused by site and branch") {
         strip_run world;
-        auto bank = world.evaluation.new_bank();
+        auto bank = world.passes.new_bank();
         bank.put({{2}, 0}, {});
-        CHECK_THROWS_WITH_AS(world.evaluation.require_recorded(bank, "frames"),
+        CHECK_THROWS_WITH_AS(world.passes.require_recorded(bank, "frames"),
                              "sequence_denoiser: features of frames at site decoder.attn1 of branch 1 are missing, "
                              "expected the denoiser to run its processor there",
                              value_error);
         bank.put({{2}, 1}, {});
-        CHECK_NOTHROW(world.evaluation.require_recorded(bank, "frames"));
+        CHECK_NOTHROW(world.passes.require_recorded(bank, "frames"));
     }
 }

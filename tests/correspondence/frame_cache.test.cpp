@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Values of frames are made once while they are among the last that were asked for, and once for all threads.
-#include <genrender/correspondence/recent_frames.hpp>
+#include <genrender/correspondence/frame_cache.hpp>
 
 #include <genrender/core/parallel.hpp>
 
@@ -14,9 +14,9 @@
 
 using namespace genrender;
 
-TEST_SUITE("correspondence/recent_frames") {
+TEST_SUITE("correspondence/frame_cache") {
     TEST_CASE("the frame that was asked for longest ago is made again") {
-        recent_frames<std::uint32_t> recent(2);
+        frame_cache<std::uint32_t> recent(2);
         std::size_t made = 0;
         auto const value_of = [&](std::uint32_t frame) {
             return *recent.of({frame}, [&] {
@@ -36,7 +36,7 @@ TEST_SUITE("correspondence/recent_frames") {
     }
 
     TEST_CASE("frames asked for in turn are found when there is room for them all") {
-        recent_frames<std::uint32_t> recent(0);
+        frame_cache<std::uint32_t> recent(0);
         recent.keep_at_least(3);
         recent.keep_at_least(2);
         std::size_t made = 0;
@@ -51,7 +51,7 @@ TEST_SUITE("correspondence/recent_frames") {
 
     TEST_CASE("a value in use stays when its place is taken") {
         for (std::size_t const most : {0U, 1U}) {
-            recent_frames<std::uint32_t> recent(most);
+            frame_cache<std::uint32_t> recent(most);
             auto const first = recent.of({1}, [] { return 7U; });
             auto const second = recent.of({2}, [] { return 8U; });
             CHECK(*first == 7);
@@ -60,13 +60,13 @@ TEST_SUITE("correspondence/recent_frames") {
     }
 
     TEST_CASE("what cannot be made is tried anew") {
-        recent_frames<std::uint32_t> recent(3);
+        frame_cache<std::uint32_t> recent(3);
         CHECK_THROWS_AS(recent.of({1}, []() -> std::uint32_t { throw std::runtime_error("no"); }), std::runtime_error);
         CHECK(*recent.of({1}, [] { return 5U; }) == 5);
     }
 
     TEST_CASE("threads that ask for one frame make it once") {
-        recent_frames<std::uint32_t> recent(5);
+        frame_cache<std::uint32_t> recent(5);
         std::atomic<std::size_t> made{0};
         std::atomic<std::size_t> wrong{0};
         threaded_loop(4)(1000, [&](std::size_t n) {

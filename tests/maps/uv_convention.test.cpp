@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Maps of other renderers, brought to v downwards and inside the texture.
-#include <genrender/guidance/uv_convention.hpp>
+#include <genrender/maps/uv_convention.hpp>
 
 #include <genrender/core/stack.hpp>
 
@@ -27,7 +27,7 @@ std::array<float, 2> adopted(float u, float v, uv_convention convention) {
 
 } // namespace
 
-TEST_SUITE("guidance/uv_convention") {
+TEST_SUITE("maps/uv_convention") {
     TEST_CASE("the library's own convention changes nothing") {
         CHECK(adopted(0.25f, 0.75f, {}) == std::array{0.25f, 0.75f});
         CHECK(adopted(-3.5f, 7, {}) == std::array{-3.5f, 7.0f});

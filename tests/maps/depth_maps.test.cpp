@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // One scale of inverse depth for the whole sequence.
-#include <genrender/guidance/depth_maps.hpp>
+#include <genrender/maps/depth_maps.hpp>
 
 #include <doctest/doctest.h>
 
 #include <limits>
 
-TEST_SUITE("guidance/depth_maps") {
+TEST_SUITE("maps/depth_maps") {
     using namespace genrender;
 
     TEST_CASE("new maps show nothing") {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // [GR sec. 3] The concept accepts what names surface points and nothing else; rest positions in any layout.
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/stack.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 
 #include <doctest/doctest.h>
 
@@ -43,7 +43,7 @@ static_assert(!canonical_maps<int>);
 
 } // namespace
 
-TEST_SUITE("guidance/canonical_maps") {
+TEST_SUITE("maps/canonical_maps") {
     TEST_CASE_TEMPLATE("extents come from coverage", Maps, uv_maps_view, position_maps_view) {
         stack<float, 4> const points({3, 4, 5, Maps::dimensions});
         stack<std::uint32_t, 3> const object({3, 4, 5});

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The report counts what it is given, and only where something is shown.
-#include <genrender/guidance/uv_report.hpp>
+#include <genrender/maps/uv_report.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 
 #include <limits>
 
-TEST_SUITE("guidance/uv_report") {
+TEST_SUITE("maps/uv_report") {
     using namespace genrender;
 
     TEST_CASE("each kind of coordinate is counted once") {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // [GR alg. 1: Phi(z^i, D^i, c, f_KF, F_bar^i)] The injected pass on several threads beside one, and a keyframe pass
 // that ends early and lends beside one that does neither.
-#include <genrender/pipeline/sequence_evaluation.hpp>
+#include <genrender/pipeline/sequence_passes.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/reference/reference_network.hpp>
 
@@ -61,7 +61,7 @@ struct world {
     threaded_loop loop;
     network phi;
     render_settings<float> settings;
-    correspondence_set<surface_correspondence<2>> maps;
+    correspondence_set<chosen_correspondence<2>> maps;
     progress_meter meter{1, 1, {}};
     render_report report;
     latents<float> z = latents<float>::from_shape({frame_count, 12, size / 2, size / 2});
@@ -72,7 +72,7 @@ struct world {
         : loop(threads), phi(network::seeded(guidance.inverse_depth, "stripes", 1, 2, loop)) {
         for (auto const& site : phi.sites()) {
             maps.add(site.grid, [&](grid_extents grid) {
-                return surface_correspondence<2>(to_uv_view(guidance.maps), grid, settings.correspondence, loop);
+                return chosen_correspondence<2>(to_uv_view(guidance.maps), grid, settings.correspondence, loop);
             });
         }
         for (std::size_t e = 0; e < z.size(); ++e) {
@@ -82,8 +82,8 @@ struct world {
     }
     world(world const&) = delete;
 
-    using run_type = sequence_run<network, surface_correspondence<2>>;
-    using evaluation_type = sequence_evaluation<network, surface_correspondence<2>>;
+    using run_type = sequence_run<network, chosen_correspondence<2>>;
+    using evaluation_type = sequence_passes<network, chosen_correspondence<2>>;
     run_type run() { return {&phi, &maps, &settings, loop, &meter, &report}; }
 };
 

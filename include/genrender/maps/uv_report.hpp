@@ -6,7 +6,7 @@
 
 #include <genrender/core/finite.hpp>
 #include <genrender/core/index.hpp>
-#include <genrender/guidance/uv_maps_view.hpp>
+#include <genrender/maps/uv_maps_view.hpp>
 
 #include <cstddef>
 #include <cstdint>

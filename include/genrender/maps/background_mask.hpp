@@ -6,8 +6,8 @@
 
 #include <genrender/core/index.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/guidance/cell_extents.hpp>
+#include <genrender/maps/canonical_maps.hpp>
+#include <genrender/maps/cell_extents.hpp>
 
 #include <cstddef>
 #include <cstdint>

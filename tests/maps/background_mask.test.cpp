@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A cell is background only if no object touches it.
-#include <genrender/guidance/background_mask.hpp>
+#include <genrender/maps/background_mask.hpp>
 
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 
-TEST_SUITE("guidance/background_mask") {
+TEST_SUITE("maps/background_mask") {
     using namespace genrender;
 
     TEST_CASE("[GR sec. 3.4] one covered pixel takes its cell out of the background") {

@@ -32,7 +32,7 @@ struct footprint_point {
 /// Kept pixels of one object in one frame. Of those nearest to a point in canonical space the one closest on the
 /// frame's screen shows it, if it is within reach; ties by lowest token.
 template <std::size_t D>
-class kept_samples {
+class object_samples {
 public:
     using point_type = footprint_point<D>;
 
@@ -49,7 +49,7 @@ public:
 
     /// Of pixels in a frame whose cells have `cell` pixels and keep samples `spacing` of them apart. A sample reaches
     /// `reach` half cells.
-    kept_samples(std::vector<sample> samples, double reach, grid_extents cell, double spacing)
+    object_samples(std::vector<sample> samples, double reach, grid_extents cell, double spacing)
         : reach_(reach), height_(static_cast<double>(cell.height)), width_(static_cast<double>(cell.width)),
           grid_(samples, reach, height_, width_, spacing) {
         shown_.assign(samples.begin(), samples.end());

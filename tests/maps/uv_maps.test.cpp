@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // UV maps begin empty and are read through their view.
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 
-TEST_SUITE("guidance/uv_maps") {
+TEST_SUITE("maps/uv_maps") {
     using namespace genrender;
 
     TEST_CASE("new maps show nothing") {

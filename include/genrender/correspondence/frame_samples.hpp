@@ -6,10 +6,10 @@
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
-#include <genrender/correspondence/kept_samples.hpp>
+#include <genrender/correspondence/object_samples.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
-#include <genrender/guidance/cell_extents.hpp>
+#include <genrender/maps/canonical_maps.hpp>
+#include <genrender/maps/cell_extents.hpp>
 
 #include <algorithm>
 #include <array>
@@ -39,8 +39,8 @@ void require_finite_point(char const* function, std::array<float, D> const& poin
 /// A frame's samples: of every cell of a feature map up to 4 x 4 of the map's pixels for each object in it, and the
 /// pixel that stands for the cell's token.
 template <std::size_t D>
-class kept_frame {
-    using sample = typename kept_samples<D>::sample;
+class frame_samples {
+    using sample = typename object_samples<D>::sample;
 
 public:
     /// Rows and columns of parts of a cell.
@@ -51,9 +51,9 @@ public:
     /// finite.
     template <canonical_maps Maps, class RepresentativeOf>
         requires(Maps::dimensions == D)
-    kept_frame(Maps const& maps, frame_index i, grid_extents grid, double reach,
-               RepresentativeOf const& representative_of) {
-        auto const cell = cell_extents("kept_frame", maps.grid(), grid);
+    frame_samples(Maps const& maps, frame_index i, grid_extents grid, double reach,
+                  RepresentativeOf const& representative_of) {
+        auto const cell = cell_extents("frame_samples", maps.grid(), grid);
         std::map<object_index, std::vector<sample>> found;
         cell_reader<Maps> reader(maps, i, cell);
         for (std::uint32_t t = 0; t < grid.size(); ++t) {
@@ -68,7 +68,7 @@ public:
 
     /// Bytes of a frame in which objects fill so many pixels of cells of that many, about.
     static constexpr std::size_t expected_bytes(std::size_t pixels, std::size_t cell) {
-        return kept_samples<D>::expected_bytes(expected_samples(pixels, cell));
+        return object_samples<D>::expected_bytes(expected_samples(pixels, cell));
     }
 
     /// Bytes that making such a frame takes for a moment, about: samples as they are found, in vectors that are a third
@@ -78,7 +78,7 @@ public:
     }
 
     /// The samples of an object; null if the frame does not show it.
-    kept_samples<D> const* samples_of(object_index object) const {
+    object_samples<D> const* samples_of(object_index object) const {
         auto const found = of_object_.find(object);
         return found != of_object_.end() ? &found->second : nullptr;
     }
@@ -173,7 +173,7 @@ private:
 
         sample sample_at(pixel p, token_index token, double purity) const {
             auto const place = maps_.point_at(i_, p);
-            detail::require_finite_point("kept_frame", place);
+            detail::require_finite_point("frame_samples", place);
             auto const footprint = footprint_at(maps_, i_, p);
             auto const quality = footprint ? purity / footprint->area() : 0;
             auto const most = double{std::numeric_limits<float>::max()};
@@ -188,7 +188,7 @@ private:
         std::vector<object_entry> seen_;
     };
 
-    std::map<object_index, kept_samples<D>> of_object_;
+    std::map<object_index, object_samples<D>> of_object_;
 };
 
 } // namespace genrender

@@ -9,7 +9,7 @@
 #include <genrender/correspondence/footprint_map.hpp>
 #include <genrender/correspondence/texel_grid.hpp>
 #include <genrender/correspondence/token_matches.hpp>
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 
 #include <concepts>
 #include <cstddef>
@@ -38,7 +38,7 @@ struct correspondence_settings {
 
 /// One of the library's correspondence maps behind one type: a model of weighted_ and graded_correspondence_map.
 template <std::size_t D>
-class surface_correspondence {
+class chosen_correspondence {
     using footprints = footprint_map<D>;
 
 public:
@@ -49,8 +49,8 @@ public:
     /// does, value_error for texels of maps that are not UV maps.
     template <canonical_maps Maps>
         requires(Maps::dimensions == D)
-    surface_correspondence(Maps const& maps, grid_extents grid, correspondence_settings const& settings,
-                           any_loop const& loop = {})
+    chosen_correspondence(Maps const& maps, grid_extents grid, correspondence_settings const& settings,
+                          any_loop const& loop = {})
         : map_(make(maps, grid, settings, loop)) {}
 
     std::size_t frame_count() const {
@@ -111,7 +111,7 @@ private:
             return any_map(std::in_place_type<texel_grid>, maps, grid, settings.texels, loop);
         } else {
             throw value_error(
-                "surface_correspondence: settings.kind is texel_grid, expected footprint for maps that are "
+                "chosen_correspondence: settings.kind is texel_grid, expected footprint for maps that are "
                 "not UV maps");
         }
     }

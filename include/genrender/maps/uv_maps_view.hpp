@@ -4,7 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/guidance/canonical_maps.hpp>
+#include <genrender/maps/canonical_maps.hpp>
 
 namespace genrender {
 

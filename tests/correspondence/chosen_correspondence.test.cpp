@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // [GR sec. 3.2] The correspondence chosen answers as the map that it stands for.
-#include <genrender/correspondence/surface_correspondence.hpp>
+#include <genrender/correspondence/chosen_correspondence.hpp>
 
 #include "../support/correspondence_laws.hpp"
 #include "../support/random_scene.hpp"
 
 #include <genrender/core/stack.hpp>
 #include <genrender/correspondence/reproject.hpp>
-#include <genrender/guidance/uv_maps.hpp>
+#include <genrender/maps/uv_maps.hpp>
 
 #include <doctest/doctest.h>
 
@@ -21,10 +21,10 @@ using namespace genrender;
 
 namespace {
 
-static_assert(weighted_correspondence_map<surface_correspondence<2>>);
-static_assert(graded_correspondence_map<surface_correspondence<2>>);
-static_assert(weighted_correspondence_map<surface_correspondence<3>>);
-static_assert(graded_correspondence_map<surface_correspondence<3>>);
+static_assert(weighted_correspondence_map<chosen_correspondence<2>>);
+static_assert(graded_correspondence_map<chosen_correspondence<2>>);
+static_assert(weighted_correspondence_map<chosen_correspondence<3>>);
+static_assert(graded_correspondence_map<chosen_correspondence<3>>);
 
 using weighted_tokens = std::vector<std::pair<token_index, double>>;
 
@@ -38,7 +38,7 @@ weighted_tokens tokens_of(Map const& map, frame_index i, typename Map::point_typ
 /// Calls `compare(frame asked, chosen point, own point)` for every point that both maps show, which must be the same
 /// ones, in every frame; returns how many.
 template <std::size_t D, class Map, class Compare>
-std::size_t for_each_point(surface_correspondence<D> const& chosen, Map const& own, Compare const& compare) {
+std::size_t for_each_point(chosen_correspondence<D> const& chosen, Map const& own, Compare const& compare) {
     REQUIRE(chosen.frame_count() == own.frame_count());
     REQUIRE(chosen.grid() == own.grid());
     std::size_t shown = 0;
@@ -58,7 +58,7 @@ std::size_t for_each_point(surface_correspondence<D> const& chosen, Map const& o
 
 } // namespace
 
-TEST_SUITE("correspondence/surface_correspondence") {
+TEST_SUITE("correspondence/chosen_correspondence") {
     TEST_CASE("footprints are what is chosen where nothing is said") {
         CHECK(correspondence_settings{}.kind == correspondence_kind::footprint);
     }
@@ -69,7 +69,7 @@ TEST_SUITE("correspondence/surface_correspondence") {
         for (std::uint64_t seed = 0; seed < 3; ++seed) {
             auto const maps = testing::random_scene(seed, 3, {48, 48}, 3);
             // A reach of its own shows that the settings arrive.
-            surface_correspondence<2> const chosen(to_uv_view(maps), {12, 12}, {.footprint = {.reach = 0.4}});
+            chosen_correspondence<2> const chosen(to_uv_view(maps), {12, 12}, {.footprint = {.reach = 0.4}});
             footprint_map const own(to_uv_view(maps), {12, 12}, {.reach = 0.4});
             compared += for_each_point(chosen, own, [&](frame_index j, auto const& point, auto const& own_point) {
                 auto const token = own.token_at(j, own_point);
@@ -91,8 +91,8 @@ TEST_SUITE("correspondence/surface_correspondence") {
             for (std::uint64_t seed = 0; seed < 3; ++seed) {
                 auto const maps = testing::random_scene(seed, 3, {48, 48}, 3);
                 texel_grid_settings const texels{.T = 9, .reading = reading};
-                surface_correspondence<2> const chosen(to_uv_view(maps), {12, 12},
-                                                       {.kind = correspondence_kind::texel_grid, .texels = texels});
+                chosen_correspondence<2> const chosen(to_uv_view(maps), {12, 12},
+                                                      {.kind = correspondence_kind::texel_grid, .texels = texels});
                 texel_grid const own(to_uv_view(maps), {12, 12}, texels);
                 compared += for_each_point(chosen, own, [&](frame_index j, auto const& point, auto const& own_point) {
                     auto const token = own.token_at(j, own_point);
@@ -112,7 +112,7 @@ TEST_SUITE("correspondence/surface_correspondence") {
 
     TEST_CASE("[GR sec. 3.2] matches of whole frames are told by footprints and not by texels") {
         auto const maps = testing::random_scene(8, 4, {48, 48}, 3);
-        surface_correspondence<2> const map(to_uv_view(maps), {12, 12}, {});
+        chosen_correspondence<2> const map(to_uv_view(maps), {12, 12}, {});
         std::vector<frame_index> const frames{{2}, {0}, {3}};
         auto const matches = map.matches({0}, frames);
         REQUIRE(matches.size() == 3);
@@ -128,7 +128,7 @@ TEST_SUITE("correspondence/surface_correspondence") {
             }
         }
         CHECK(shown > 90);
-        surface_correspondence<2> const texels(to_uv_view(maps), {12, 12}, {.kind = correspondence_kind::texel_grid});
+        chosen_correspondence<2> const texels(to_uv_view(maps), {12, 12}, {.kind = correspondence_kind::texel_grid});
         CHECK(texels.matches({0}, frames).empty());
     }
 
@@ -136,7 +136,7 @@ TEST_SUITE("correspondence/surface_correspondence") {
         for (std::uint64_t seed = 0; seed < 3; ++seed) {
             auto const maps = testing::random_scene(seed, 3, {48, 32}, 3);
             for (auto const kind : {correspondence_kind::footprint, correspondence_kind::texel_grid}) {
-                surface_correspondence<2> const map(to_uv_view(maps), {12, 8}, {.kind = kind});
+                chosen_correspondence<2> const map(to_uv_view(maps), {12, 8}, {.kind = kind});
                 CHECK(testing::check_correspondence_laws(map) > 50);
             }
         }
@@ -157,7 +157,7 @@ TEST_SUITE("correspondence/surface_correspondence") {
             }
         }
         position_maps_view const maps(position.view(), object.view(), coverage.view());
-        surface_correspondence<3> const map(maps, {4, 4}, {.footprint = {.reach = 0.5}});
+        chosen_correspondence<3> const map(maps, {4, 4}, {.footprint = {.reach = 0.5}});
         for (std::uint32_t t = 0; t < 16; ++t) {
             auto const found = corresponding_token(map, {0}, {1}, {t});
             REQUIRE(found.has_value() == (t % 4 < 2));
@@ -167,28 +167,28 @@ TEST_SUITE("correspondence/surface_correspondence") {
         }
         CHECK(testing::check_correspondence_laws(map) == 32);
         CHECK_THROWS_WITH_AS(
-            surface_correspondence<3>(maps, {4, 4}, {.kind = correspondence_kind::texel_grid}),
-            "surface_correspondence: settings.kind is texel_grid, expected footprint for maps that are not UV maps",
+            chosen_correspondence<3>(maps, {4, 4}, {.kind = correspondence_kind::texel_grid}),
+            "chosen_correspondence: settings.kind is texel_grid, expected footprint for maps that are not UV maps",
             value_error);
     }
 
     TEST_CASE("what the map chosen refuses is refused in its words") {
         auto const maps = testing::random_scene(1, 1, {16, 16}, 1);
-        CHECK_THROWS_WITH_AS(surface_correspondence<2>(to_uv_view(maps), {5, 4}, {}),
+        CHECK_THROWS_WITH_AS(chosen_correspondence<2>(to_uv_view(maps), {5, 4}, {}),
                              "footprint_map: grid is [5, 4], expected extents that divide the maps' [16, 16]",
                              value_error);
-        CHECK_THROWS_WITH_AS(surface_correspondence<2>(to_uv_view(maps), {4, 4}, {.footprint = {.reach = 0}}),
+        CHECK_THROWS_WITH_AS(chosen_correspondence<2>(to_uv_view(maps), {4, 4}, {.footprint = {.reach = 0}}),
                              "footprint_map: settings.reach is 0.000000, expected a number above 0", value_error);
         CHECK_THROWS_WITH_AS(
-            surface_correspondence<2>(to_uv_view(maps), {5, 4}, {.kind = correspondence_kind::texel_grid}),
+            chosen_correspondence<2>(to_uv_view(maps), {5, 4}, {.kind = correspondence_kind::texel_grid}),
             "texel_grid: grid is [5, 4], expected extents that divide the maps' [16, 16]", value_error);
     }
 
     TEST_CASE("threads compile what one compiles") {
         auto const maps = testing::random_scene(3, 4, {32, 32}, 3);
         for (auto const kind : {correspondence_kind::footprint, correspondence_kind::texel_grid}) {
-            surface_correspondence<2> const one(to_uv_view(maps), {8, 8}, {.kind = kind});
-            surface_correspondence<2> const two(to_uv_view(maps), {8, 8}, {.kind = kind}, threaded_loop(2));
+            chosen_correspondence<2> const one(to_uv_view(maps), {8, 8}, {.kind = kind});
+            chosen_correspondence<2> const two(to_uv_view(maps), {8, 8}, {.kind = kind}, threaded_loop(2));
             CHECK(for_each_point(one, two, [&](frame_index j, auto const& point, auto const& other) {
                       CHECK(one.token_at(j, point) == two.token_at(j, other));
                   }) > 50);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // [GR sec. 3] Cells of map pixels.
-#include <genrender/guidance/cell_extents.hpp>
+#include <genrender/maps/cell_extents.hpp>
 
 #include <doctest/doctest.h>
 
 using namespace genrender;
 
-TEST_SUITE("guidance/cell_extents") {
+TEST_SUITE("maps/cell_extents") {
     TEST_CASE("a cell is the whole ratio of the extents") {
         CHECK(cell_extents("here", {512, 256}, {64, 64}) == grid_extents{8, 4});
         CHECK(cell_extents("here", {3, 3}, {3, 1}) == grid_extents{1, 3});
