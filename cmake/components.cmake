@@ -14,7 +14,8 @@ endmacro()
 # genrender_component(NAME [PACKAGES packages] HEADERS headers)
 #   The core is genrender::genrender and has its rooms in the order in which the data flows. Every other component is
 #   genrender::NAME, lies in the room of its name, and links its packages and the core. Headers lie in include/genrender,
-#   the umbrella first; a file *.inl is a part of the headers that include it.
+#   the umbrella first; a file *.inl is a part of the headers that include it. The room `testing` holds the laws of the
+#   concepts of every component; each belongs to the component of its concept and to no umbrella.
 macro(genrender_component name)
     list(APPEND genrender_components ${name})
     cmake_parse_arguments(genrender_${name} "" "" "PACKAGES;HEADERS" ${ARGN})
@@ -149,7 +150,15 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     baselines/previous_frame_attention.hpp
     baselines/propagation_plan.hpp
     baselines/token_propagation.hpp
-    baselines/tokenflow.hpp)
+    baselines/tokenflow.hpp
+    testing/analytic_denoiser.hpp
+    testing/attention_call_laws.hpp
+    testing/attention_processor_laws.hpp
+    testing/correspondence_laws.hpp
+    testing/denoiser_laws.hpp
+    testing/law_report.hpp
+    testing/random_stack.hpp
+    testing/sequence_method_laws.hpp)
 
 genrender_component(scene PACKAGES glm HEADERS
     scene.hpp
@@ -162,7 +171,8 @@ genrender_component(scene PACKAGES glm HEADERS
     scene/rasterizer.hpp
     scene/skinning.hpp
     scene/triangle_coverage.hpp
-    scene/uv_overlap.hpp)
+    scene/uv_overlap.hpp
+    testing/animation_laws.hpp)
 
 genrender_component(inspection HEADERS
     inspection.hpp
@@ -194,7 +204,8 @@ genrender_component(evaluation HEADERS
     evaluation/prompt_fidelity.hpp
     evaluation/recognition.hpp
     evaluation/sharpness.hpp
-    evaluation/time_slice.hpp)
+    evaluation/time_slice.hpp
+    testing/embedder_laws.hpp)
 
 genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference.hpp

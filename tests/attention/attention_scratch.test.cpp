@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include "support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <algorithm>
 #include <utility>

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "support/counted_memory.hpp"
-#include "support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/parallel.hpp>

@@ -2,7 +2,7 @@
 // [GR sec. 4: Per-Frame] The baseline leaves every frame to itself.
 #include <genrender/baselines/per_frame.hpp>
 
-#include "../support/analytic_denoiser.hpp"
+#include <genrender/testing/analytic_denoiser.hpp>
 #include "../support/random_scene.hpp"
 
 #include <genrender/pipeline/render.hpp>

@@ -4,7 +4,7 @@
 
 #include "../support/dense_texture.hpp"
 #include "../support/random_scene.hpp"
-#include "../support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 #include "../support/shifted_strip.hpp"
 
 #include <genrender/blending/mix_rows.hpp>

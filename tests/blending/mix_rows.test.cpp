@@ -4,7 +4,7 @@
 
 #include <genrender/core/linalg.hpp>
 
-#include "../support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <doctest/doctest.h>
 

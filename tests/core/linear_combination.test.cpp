@@ -5,7 +5,7 @@
 #include <genrender/core/stack.hpp>
 
 #include "support/each_vector_target.hpp"
-#include "support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 // [GR sec. 3.2] Tokens that meet where a surface point lies under a cell: by hand, by search and on a rasterised scene.
 #include <genrender/correspondence/footprint_map.hpp>
 
-#include "../support/correspondence_laws.hpp"
+#include <genrender/testing/correspondence_laws.hpp>
 #include "../support/random_scene.hpp"
 #include "../support/small_maps.hpp"
 
@@ -150,9 +150,10 @@ TEST_SUITE("correspondence/footprint_map") {
                         expected += representative_pixel(to_uv_view(maps), {i}, grid, {t}) ? 1U : 0U;
                     }
                 }
-                auto const shown = testing::check_correspondence_laws(map);
-                CHECK(shown == expected);
-                shown_in_all += shown;
+                auto const laws = testing::check_correspondence_laws(map);
+                CHECK(laws.text() == "");
+                CHECK(laws.shown_tokens == expected);
+                shown_in_all += laws.shown_tokens;
             }
         }
         CHECK(shown_in_all > 10000);
@@ -341,7 +342,9 @@ TEST_SUITE("correspondence/footprint_map") {
         auto const maps = testing::random_scene(2, 2, {48, 64}, 3);
         for (auto const grid : {grid_extents{12, 16}, {6, 8}, {3, 4}}) {
             footprint_map const map(to_uv_view(maps), grid, {.reach = 1e-6});
-            CHECK(testing::check_correspondence_laws(map) > grid.size() / 2);
+            auto const laws = testing::check_correspondence_laws(map);
+            CHECK(laws.text() == "");
+            CHECK(laws.shown_tokens > grid.size() / 2);
         }
     }
 
@@ -445,7 +448,9 @@ TEST_SUITE("correspondence/footprint_map") {
         footprint_map const by_position(at_rest.view(), {4, 4});
         CHECK(count_found(by_position, {1}, {0}) == 0);
         CHECK(count_found(by_position, {2}, {0}) == 16);
-        CHECK(testing::check_correspondence_laws(by_position) == 48);
+        auto const laws = testing::check_correspondence_laws(by_position);
+        CHECK(laws.text() == "");
+        CHECK(laws.shown_tokens == 48);
     }
 
     TEST_CASE("a seam of the texture joins nothing and parts nothing") {
@@ -508,13 +513,17 @@ TEST_SUITE("correspondence/footprint_map") {
         CHECK_FALSE(map.point_at({0}, {5})->footprint.has_value());
         CHECK(corresponding_token(map, {1}, {0}, {5}) == token_index{5});
         CHECK_FALSE(corresponding_token(map, {2}, {0}, {5}).has_value()); // no footprint tells how far they are
-        CHECK(testing::check_correspondence_laws(map) == 3);
+        auto const laws = testing::check_correspondence_laws(map);
+        CHECK(laws.text() == "");
+        CHECK(laws.shown_tokens == 3);
     }
 
     TEST_CASE("an animation that shows nothing has no points") {
         uv_maps const maps(2, {4, 4});
         footprint_map const map(to_uv_view(maps), {2, 2});
-        CHECK(testing::check_correspondence_laws(map) == 0);
+        auto const laws = testing::check_correspondence_laws(map);
+        CHECK(laws.text() == "");
+        CHECK(laws.shown_tokens == 0);
         footprint_map<2>::point_type const point{{0}, {0.5F, 0.5F}, surface_footprint<2>{{1, 0}, {0, 1}}};
         CHECK_FALSE(map.token_at({1}, point).has_value());
         CHECK(map.quality_at({1}, point) == 0);

@@ -3,7 +3,7 @@
 #include <genrender/correspondence/reproject.hpp>
 
 #include "../support/random_scene.hpp"
-#include "../support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 #include "../support/shifted_strip.hpp"
 
 #include <genrender/correspondence/texel_grid.hpp>

@@ -3,7 +3,7 @@
 #include <genrender/correspondence/texture_projection.hpp>
 
 #include "../support/random_scene.hpp"
-#include "../support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <doctest/doctest.h>
 

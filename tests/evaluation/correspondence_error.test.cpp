@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "support/random_scene.hpp"
-#include "support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <array>
 #include <cmath>

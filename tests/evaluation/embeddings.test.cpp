@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "support/colour_embedder.hpp"
-#include "support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <cmath>
 #include <string>

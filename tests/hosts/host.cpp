@@ -18,7 +18,7 @@
 #undef EPS
 #endif
 
-#include "../support/analytic_denoiser.hpp"
+#include <genrender/testing/analytic_denoiser.hpp>
 #include "../support/slanted_maps.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Who can end a keyframe pass early, who lends, and where the pass may end.
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 
-#include "support/analytic_denoiser.hpp"
+#include <genrender/testing/analytic_denoiser.hpp>
 
 #include <doctest/doctest.h>
 

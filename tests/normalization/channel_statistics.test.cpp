@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -2,7 +2,7 @@
 // [GR alg. 1] Whole runs.
 #include <genrender/pipeline/render.hpp>
 
-#include "../support/analytic_denoiser.hpp"
+#include <genrender/testing/analytic_denoiser.hpp>
 #include "../support/random_scene.hpp"
 
 #include <genrender/evaluation/correspondence_error.hpp>

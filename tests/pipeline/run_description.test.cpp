@@ -2,12 +2,14 @@
 // A run is described by its denoiser and maps.
 #include <genrender/pipeline/run_description.hpp>
 
-#include "../support/analytic_denoiser.hpp"
+#include <genrender/testing/analytic_denoiser.hpp>
 #include "../support/small_maps.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 using namespace genrender;
@@ -15,6 +17,14 @@ using namespace genrender;
 namespace {
 
 struct lending_denoiser : testing::analytic_denoiser<float> {
+    struct residuals_type {};
+    using testing::analytic_denoiser<float>::operator();
+    template <class Processor>
+    void run_until(strided_view<float const, 4>, float, std::span<frame_index const>, Processor&,
+                   std::span<std::optional<site_index> const>, residuals_type* = nullptr) const {}
+    template <class Processor>
+    void operator()(strided_view<float, 4>, strided_view<float const, 4>, float, std::span<frame_index const>,
+                    Processor&, residuals_type const&) const {}
     std::size_t residual_bytes() const { return 17; }
 };
 

@@ -2,7 +2,7 @@
 // [GR alg. 1: the body of the loop] The passes one by one.
 #include <genrender/pipeline/sequence_passes.hpp>
 
-#include "../support/analytic_denoiser.hpp"
+#include <genrender/testing/analytic_denoiser.hpp>
 #include "../support/shifted_strip.hpp"
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 // Tests of the Haar transform.
 #include <genrender/reference/haar.hpp>
 
-#include "../support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 // Networks small enough to be run a hundred times, and layers written out the long way to compare with.
 #pragma once
 
-#include "../support/random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/reference/feature_maps.hpp>

@@ -5,7 +5,7 @@
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
 
-#include "random_stack.hpp"
+#include <genrender/testing/random_stack.hpp>
 
 #include <atomic>
 #include <cmath>

@@ -3,7 +3,7 @@
 // the analytic denoiser: what the sequence denoiser must equal.
 #pragma once
 
-#include "analytic_denoiser.hpp"
+#include <genrender/testing/analytic_denoiser.hpp>
 #include "dense_texture.hpp"
 
 #include <genrender/core/stack.hpp>

@@ -2,7 +2,7 @@
 // A denoiser with few pixels and many channels, as large networks have them, that counts what it is asked for.
 #pragma once
 
-#include "analytic_denoiser.hpp"
+#include <genrender/testing/analytic_denoiser.hpp>
 
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/sampling/denoiser.hpp>

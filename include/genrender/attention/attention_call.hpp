@@ -8,6 +8,7 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/sparse_rows.hpp>
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <span>
@@ -29,8 +30,10 @@ template <class Features>
 using attention_sources = std::vector<std::vector<key_value_block<Features>>>;
 
 /// One run of one self-attention module, with the engine's own operations on the engine's own tensors: a processor
-/// never touches an element, so the features may lie on a device. `Features` is a cheap handle of a stack
-/// [frames, tokens, channels], as tensors of most engines are.
+/// never touches an element, so the features may lie on a device. A denoiser makes one for every site and branch of its
+/// call and hands it to its processor as an lvalue, which may call members in any order and as often as it likes.
+/// `features_type` is a cheap handle of a stack [frames, tokens, channels], as tensors of most engines are: copies share
+/// the elements.
 ///
 /// expression                           | type            | meaning
 /// -------------------------------------|-----------------|------------------------------------------------------------
@@ -41,16 +44,23 @@ using attention_sources = std::vector<std::vector<key_value_block<Features>>>;
 ///                                      |                 | is; a span
 /// `call.f()`                           | features_type   | f: the input of the module, after its LayerNorm
 /// `call.query(f)` `key(f)` `value(f)`  | features_type   | W^Q f, W^K f, W^V f [GR eq. 2], for any stack f
-/// `call.attend(Q, sources)`            | features_type   | F [GR eq. 1], frame i of Q attending to `sources[i]`
+/// `call.attend(Q, sources)`            | features_type   | F [GR eq. 1]: frame i of Q attends to the tokens of all
+///                                      |                 | blocks of `sources[i]` in one softmax, head by head; a
+///                                      |                 | block is row `frame` of stacks that may be of other calls
 /// `call.mix(F_hat, F_KF, rows, alpha)` | features_type   | eq. 6: rows covered by `rows[i]` become alpha F_bar + (1 -
 ///                                      |                 | alpha) F_hat with F_bar = rows[i] * F_KF (F_KF read as
 ///                                      |                 | [keyframes * tokens, channels]); all others stay F_hat
 ///
-/// These the compiler cannot check, and a model owes them: results stay valid after the call for as long as a handle
-/// lives; `attend` depends on the order of blocks by rounding alone; `mix` with alpha = 0 or without covered rows
-/// returns F_hat. It does not require that F is taken before or after the output projection: blending commutes with it
-/// (weights of a row sum to 1). It must be taken before the residual is added.
+/// Members may be const or not. F_KF and K, V of a block may be results of a call at the same place for other frames,
+/// which has ended. `mix` may write into F_hat and return it; it reads F_KF alone.
 ///
+/// These the compiler cannot check, and a model owes them (check_attention_call_laws of testing/attention_call_laws.hpp
+/// checks them): results stay what they are after the call for as long as a handle lives; `attend` depends on the order
+/// of blocks by rounding alone; `mix` with alpha = 0 returns F_hat, and rows that are not covered are those of F_hat.
+/// It does not require that F is taken before or after the output projection: blending commutes with it (weights of a
+/// row sum to 1). It must be taken before the residual is added.
+///
+/// Optional capabilities: storing_attention_call (attention/feature_storage.hpp), and shaped_features of its features.
 /// See also: attention_processor, which consumes it; host_attention_call, the model for features in host memory.
 template <class Call>
 concept attention_call = std::copyable<typename Call::features_type> && std::floating_point<typename Call::real_type> &&
@@ -108,6 +118,17 @@ consteval void require_attention_call() {
         "attention_call: mix(F_hat, F_KF, rows, alpha) takes a span of sparse_rows<real_type> const and returns "
         "features_type");
 }
+
+/// Features that tell their extents, an optional capability of a features_type: the library then refuses features of
+/// keyframes whose number of frames is not that of the keyframes (pre_attention_sources); of others it knows nothing.
+///
+/// expression    | type             | meaning
+/// --------------|------------------|----------------------------------------------------------------------------------
+/// `x.extents()` | array<size_t, 3> | frames, tokens, channels
+template <class Features>
+concept shaped_features = requires(Features const& x) {
+    { x.extents() } -> std::convertible_to<std::array<std::size_t, 3>>;
+};
 
 /// The least that an attention_call is, for checking processors; never run.
 template <class Features, class Real>

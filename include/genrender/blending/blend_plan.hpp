@@ -50,9 +50,15 @@ enum class texel_average : std::uint8_t {
     by_quality ///< by how well they see it, where the correspondence says (graded_correspondence_map)
 };
 
-/// A correspondence_map that answers for all tokens of a frame at once: `map.matches(from, to)` holds, for each frame
-/// of `to`, what `map.token_at(to[k], *map.point_at(from, t))` and quality_at are for every token t, or is empty where
-/// there is more to say than that.
+/// A correspondence_map that answers for all tokens of a frame at once, an optional capability: others are asked token by
+/// token.
+///
+/// expression              | type                                    | meaning
+/// ------------------------|-----------------------------------------|------------------------------------------------
+/// `map.matches(from, to)` | vector<shared_ptr<token_matches const>> | for each frame of the span `to`, what
+///                         |                                         | `token_at(to[k], *point_at(from, t))` and
+///                         |                                         | quality_at are for every token t; empty where
+///                         |                                         | there is more to say than that
 template <class Map>
 concept matched_correspondence_map = correspondence_map<Map> &&
     requires(Map const& map, frame_index i, std::span<frame_index const> to) {

@@ -26,13 +26,16 @@ namespace genrender {
 /// `map.token_at(frame, point)` | optional<token_index> | the token that shows the point in that frame; none where it
 ///                              |                       | is hidden or out of view
 ///
-/// These the compiler cannot check, and a model owes them (tests/support/correspondence_laws.hpp checks them):
+/// These the compiler cannot check, and a model owes them (check_correspondence_laws of
+/// testing/correspondence_laws.hpp checks them):
 /// the point that a token shows is shown by some token of the same frame; tokens returned lie in the grid; equal
 /// questions get equal answers, from any thread. It does not require that the token that shows a point is the one it
 /// was asked from: where several tokens share a texel, one of them speaks for all.
 ///
-/// See also: footprint_map, without a texture; texel_grid, the paper's own; weighted_ and graded_correspondence_map,
-/// for models that know several tokens a point and how well it is seen; blend_plan, which is compiled from it.
+/// Optional capabilities: weighted_correspondence_map, for models that know several tokens a point;
+/// graded_correspondence_map, how well it is seen; matched_correspondence_map (blending/blend_plan.hpp), all tokens at
+/// once. See also: footprint_map, without a texture; texel_grid, the paper's own; make_blend_plan, which compiles plans
+/// of it; render, which asks `make_map(grid)` for a map of each feature resolution.
 template <class Map>
 concept correspondence_map = std::copyable<typename Map::point_type> &&
     requires(Map const& map, frame_index i, token_index t, typename Map::point_type const& point) {
@@ -66,17 +69,27 @@ consteval void require_correspondence_map() {
         "correspondence_map: token_at(frame, point) is const and returns std::optional<token_index>");
 }
 
-/// A correspondence_map that answers with several tokens and weights: `map.visit_tokens(frame, point, visit)` calls
-/// `visit(token_index, double weight)` for each token of the frame that shows the point, weights summing to 1, or
-/// never.
+/// A correspondence_map that answers with several tokens and weights, an optional capability: a token that another map
+/// finds counts fully and alone.
+///
+/// expression                              | type | meaning
+/// ----------------------------------------|------|-------------------------------------------------------------------
+/// `map.visit_tokens(frame, point, visit)` | any  | calls `visit(token_index, double weight)` for each token of the
+///                                         |      | frame that shows the point, weights above 0 that sum to 1; never
+///                                         |      | where token_at finds none. `visit` is of any type
 template <class Map>
 concept weighted_correspondence_map = correspondence_map<Map> &&
     requires(Map const& map, frame_index i, typename Map::point_type const& point, void (*visit)(token_index, double)) {
     map.visit_tokens(i, point, visit);
 };
 
-/// A correspondence_map that says how well a frame shows a point: `map.quality_at(frame, point)`, above 0 where
-/// token_at finds a token unless nothing is known of it, in units of which only ratios between frames matter.
+/// A correspondence_map that says how well a frame shows a point, an optional capability: with others all keyframes that
+/// see a point weigh alike, whatever `settings.average` says.
+///
+/// expression                     | type   | meaning
+/// -------------------------------|--------|--------------------------------------------------------------------------
+/// `map.quality_at(frame, point)` | double | finite, in units of which only ratios between frames matter; above 0
+///                                |        | where token_at finds a token, or 0 where nothing is known of it
 template <class Map>
 concept graded_correspondence_map = correspondence_map<Map> &&
     requires(Map const& map, frame_index i, typename Map::point_type const& point) {

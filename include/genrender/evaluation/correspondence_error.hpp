@@ -27,6 +27,17 @@ struct interval_error {
     std::optional<double> error; ///< none without pairs
 };
 
+/// A surface point that names its object, an optional capability of a correspondence_map's point_type; without it objects
+/// cannot be chosen.
+///
+/// expression     | type         | meaning
+/// ---------------|--------------|------------------------------------------------------------------------------------
+/// `point.object` | object_index | the object whose surface it is on
+template <class Point>
+concept point_of_object = requires(Point const& point) {
+    { point.object } -> std::convertible_to<object_index>;
+};
+
 namespace detail {
 
 /// Whether the object of a surface point counts; without a choice, a map's points need not name their object.
@@ -48,43 +59,41 @@ bool point_counts(Point const& point, Counts const& counts) {
 /// objects, which takes a map whose points have an `object`. Blurring lowers the error too: print contrast beside it.
 /// Throws shape_error if images and map differ, value_error for an interval of 0.
 template <class Real, correspondence_map Map, object_predicate Counts = every_object>
-    requires std::same_as<Counts, every_object> || requires(typename Map::point_type const& point) {
-        { point.object } -> std::convertible_to<object_index>;
-    }
-std::vector<interval_error> correspondence_errors(strided_view<Real, 4> images, Map const& map,
-                                                  std::span<std::size_t const> intervals, Counts const& counts = {}) {
-    auto const grid = grid_extents(map.grid());
-    require_extents("correspondence_error", "images", images.extents(),
-                    std::array{std::size_t(map.frame_count()), images.extent(1), grid.height, grid.width});
-    std::vector<interval_error> result;
-    for (auto const interval : intervals) {
-        require_value(interval > 0, "correspondence_error", "interval", interval, "at least 1");
-        double squares = 0;
-        std::size_t pairs = 0;
-        for (std::size_t later = interval; later < images.extent(0); ++later) {
-            frame_index const i{static_cast<std::uint32_t>(later - interval)};
-            frame_index const j{static_cast<std::uint32_t>(later)};
-            for (std::uint32_t p = 0; p < grid.size(); ++p) {
-                auto const point = map.point_at(j, {p});
-                auto const is_chosen = point && detail::point_counts(*point, counts);
-                auto const q = is_chosen ? map.token_at(i, *point) : std::nullopt;
-                if (!q) {
-                    continue;
-                }
-                ++pairs;
-                for (std::size_t c = 0; c < images.extent(1); ++c) {
-                    auto const difference =
-                        static_cast<double>(images(j.value, c, p / grid.width, p % grid.width)) -
-                        static_cast<double>(images(i.value, c, q->value / grid.width, q->value % grid.width));
-                    squares += difference * difference;
+    requires std::same_as<Counts, every_object> || point_of_object<typename Map::point_type> std::vector<interval_error>
+    correspondence_errors(strided_view<Real, 4> images, Map const& map, std::span<std::size_t const> intervals,
+                          Counts const& counts = {}) {
+        auto const grid = grid_extents(map.grid());
+        require_extents("correspondence_error", "images", images.extents(),
+                        std::array{std::size_t(map.frame_count()), images.extent(1), grid.height, grid.width});
+        std::vector<interval_error> result;
+        for (auto const interval : intervals) {
+            require_value(interval > 0, "correspondence_error", "interval", interval, "at least 1");
+            double squares = 0;
+            std::size_t pairs = 0;
+            for (std::size_t later = interval; later < images.extent(0); ++later) {
+                frame_index const i{static_cast<std::uint32_t>(later - interval)};
+                frame_index const j{static_cast<std::uint32_t>(later)};
+                for (std::uint32_t p = 0; p < grid.size(); ++p) {
+                    auto const point = map.point_at(j, {p});
+                    auto const is_chosen = point && detail::point_counts(*point, counts);
+                    auto const q = is_chosen ? map.token_at(i, *point) : std::nullopt;
+                    if (!q) {
+                        continue;
+                    }
+                    ++pairs;
+                    for (std::size_t c = 0; c < images.extent(1); ++c) {
+                        auto const difference =
+                            static_cast<double>(images(j.value, c, p / grid.width, p % grid.width)) -
+                            static_cast<double>(images(i.value, c, q->value / grid.width, q->value % grid.width));
+                        squares += difference * difference;
+                    }
                 }
             }
+            auto const count = static_cast<double>(pairs * images.extent(1));
+            result.push_back({interval, pairs, count > 0 ? std::optional(std::sqrt(squares / count)) : std::nullopt});
         }
-        auto const count = static_cast<double>(pairs * images.extent(1));
-        result.push_back({interval, pairs, count > 0 ? std::optional(std::sqrt(squares / count)) : std::nullopt});
+        return result;
     }
-    return result;
-}
 
 /// The error at one interval over all objects, see correspondence_errors; none if there is no pair of pixels.
 template <class Real, correspondence_map Map>

@@ -17,8 +17,16 @@
 
 namespace genrender {
 
-/// What an engine brings of a self-attention module: each of `query`, `key`, `value` writes W f [tokens, channels] for
-/// the features f [tokens, channels] of one frame (out-argument first).
+/// What an engine brings of a self-attention module to a host_attention_call.
+///
+/// expression                                                        | type   | meaning
+/// ------------------------------------------------------------------|--------|---------------------------------------
+/// `module.query(out, f)` `module.key(out, f)` `module.value(out, f)` | void   | writes W^Q f, W^K f, W^V f [tokens,
+///                                                                   |        | channels] of the features f [tokens,
+///                                                                   |        | channels] of one frame into `out`
+/// `module.heads()`                                                  | size_t | attention heads, a divisor of channels
+///
+/// All members are const and may be called from the threads of the call's loop at once.
 template <class Projections, class Real>
 concept attention_projections = requires(Projections const& module, strided_view<Real, 2> out,
                                          strided_view<Real const, 2> f) {

@@ -8,7 +8,6 @@
 #include <genrender/core/error.hpp>
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -20,9 +19,7 @@ namespace detail {
 /// Throws shape_error if features that tell their extents are of another number of frames.
 template <class Features>
 void require_frames(char const* function, char const* argument, Features const& x, std::size_t frames) {
-    if constexpr (requires {
-                      { x.extents() } -> std::convertible_to<std::array<std::size_t, 3>>;
-                  }) {
+    if constexpr (shaped_features<Features>) {
         std::array<std::size_t, 3> const extents = x.extents();
         require_extents(function, argument, extents, std::array{frames, extents[1], extents[2]});
     }

@@ -18,6 +18,8 @@ namespace genrender {
 /// A denoiser that can end a call after the last site whose features are wanted, an optional capability: the keyframe
 /// pass needs no estimates.
 ///
+/// A denoiser without it estimates the keyframes as any others, and nobody reads the estimates.
+///
 /// expression                                         | type | meaning
 /// ---------------------------------------------------|------|--------------------------------------------------------
 /// `phi.run_until(z, sigma, frames, processor, last)` | void | runs the processor at the sites 0 ... last[branch] of
@@ -25,7 +27,9 @@ namespace genrender {
 ///                                                    |      | does, to the bit; nothing of a branch without a last
 ///                                                    |      | site. `last` has one entry a branch
 ///
-/// It may run more sites than asked for.
+/// Sites count in the order of sites(), so a network that stops saves most where that is the order in which it runs
+/// them. It may run more sites than asked for, each once; z is not changed (check_denoiser_laws of
+/// testing/denoiser_laws.hpp checks this).
 template <class Phi>
 concept stoppable_denoiser = denoiser<Phi> &&
     requires(Phi const& phi, strided_view<typename Phi::real_type const, 4> z, typename Phi::real_type sigma,
@@ -35,7 +39,8 @@ concept stoppable_denoiser = denoiser<Phi> &&
 };
 
 /// A denoiser that lends what a call has computed of its frames to later calls of the same frames at the same z and
-/// sigma, such as the residuals of a ControlNet and the network's way down, an optional capability.
+/// sigma, such as the residuals of a ControlNet and the network's way down, an optional capability. One without it
+/// computes the keyframes anew among all frames.
 ///
 /// expression                                                 | type            | meaning
 /// -----------------------------------------------------------|-----------------|--------------------------------------
@@ -45,7 +50,8 @@ concept stoppable_denoiser = denoiser<Phi> &&
 /// `phi.residual_bytes()`                                     | size_t          | what is lent takes a frame
 ///
 /// The model decides what is equal: it reuses only what both processors leave as it is (is_plain_at), and only for
-/// frames, z and sigma that are those of the first call. It may be called from several threads with one `lent`.
+/// frames, z and sigma that are those of the first call. `lent` may be null in run_until. The estimates may be asked for
+/// from several threads with one `lent` (check_denoiser_laws checks that what is lent changes no estimate).
 template <class Phi>
 concept residual_lender = stoppable_denoiser<Phi> && std::movable<typename Phi::residuals_type> &&
     std::default_initializable<typename Phi::residuals_type> &&

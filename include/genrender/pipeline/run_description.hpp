@@ -6,6 +6,7 @@
 
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/index.hpp>
+#include <genrender/keyframes/stoppable_denoiser.hpp>
 #include <genrender/maps/canonical_maps.hpp>
 #include <genrender/sampling/denoiser.hpp>
 
@@ -47,7 +48,8 @@ run_description describe_run(Phi const& phi, Maps const& maps, std::size_t calls
     run.latent_channels = phi.latent_channels();
     run.latent_grid = phi.latent_grid();
     run.branches = phi.branches();
-    run.sites.assign(std::ranges::begin(phi.sites()), std::ranges::end(phi.sites()));
+    auto const& sites = phi.sites();
+    run.sites.assign(std::ranges::begin(sites), std::ranges::end(sites));
     run.map_grid = maps.grid();
     run.map_dimensions = Maps::dimensions;
     run.calls_at_once = calls_at_once;
@@ -67,7 +69,7 @@ run_description describe_run(Phi const& phi, Maps const& maps, std::size_t calls
             run.surface_pixels.push_back(count);
         }
     }
-    if constexpr (requires { phi.residual_bytes(); }) {
+    if constexpr (residual_lender<Phi>) {
         run.residual_bytes = phi.residual_bytes();
     }
     return run;

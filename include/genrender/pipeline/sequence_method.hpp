@@ -27,10 +27,16 @@ namespace genrender {
 /// `method(passes)`                             | void                | writes the clean estimates of all frames by
 ///                                              |                     | the passes of a sequence_passes
 ///
-/// These the compiler cannot check, and a model owes them (tests/support/sequence_method_laws.hpp): every evaluation
-/// runs the keyframes it announced and every frame once; estimates depend neither on the loop nor on
-/// `settings.frames_per_call`; equal arguments give equal estimates, from any thread: nothing is kept from one
-/// evaluation to the next, and what is drawn depends on the settings' seeds and the step alone.
+/// `passes` is a sequence_passes of any denoiser and map, so operator() is a template. Its passes are
+/// `record_keyframes`, `denoise_frames`, `denoise_frames_in_order` and `denoise_frames_alone`; it tells `settings()`,
+/// `step()`, `frame_count()`, `takes_part(place)` and `alpha(site)`. `settings` are render_settings of the denoiser's
+/// scalar; members are const and are called from one thread at a time.
+///
+/// These the compiler cannot check, and a model owes them (check_sequence_method_laws of
+/// testing/sequence_method_laws.hpp checks them): every evaluation runs the keyframes it announced and every frame once;
+/// estimates depend neither on the loop nor on `settings.frames_per_call`; equal arguments give equal estimates, from
+/// any thread: nothing is kept from one evaluation to the next, and what is drawn depends on the settings' seeds and the
+/// step alone.
 /// It does not require to read all settings; each model says which it leaves unread.
 ///
 /// See also: generative_rendering, the paper's method; pix2video and tokenflow, its baselines; sequence_passes,

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/attention_processor.hpp>
+#include <genrender/attention/attention_site.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/strided_view.hpp>
 
@@ -15,18 +16,33 @@
 
 namespace genrender {
 
+/// The self-attention modules of a denoiser, in the order in which attention_place::site counts them: a vector, an array
+/// or a span of attention_site, or what is read like one.
+///
+/// expression                 | type            | meaning
+/// ---------------------------|-----------------|-----------------------------------------------------------------------
+/// `std::ranges::size(sites)` | size_t          | number of modules; sites are a random access range
+/// `sites[s]`                 | attention_site  | what module s is: its name, network, part, grid and channels. The range
+///                            |                 | gives attention_site const&, or what converts to it
+template <class Sites>
+concept attention_sites = std::ranges::random_access_range<Sites> && std::ranges::sized_range<Sites> &&
+    std::convertible_to<std::ranges::range_reference_t<Sites>, attention_site const&>&& requires(Sites&& sites,
+                                                                                                 std::size_t s) {
+    { sites[s] } -> std::convertible_to<attention_site const&>;
+};
+
 /// Estimates the clean latents of a stack of frames at a noise level, running the processor it is given at each of its
 /// self-attention sites. Phi of the paper; it owns its conditioning (prompt, depth maps, guidance scale) and looks it
 /// up by frame_index.
 ///
 /// expression                             | type            | meaning
 /// ---------------------------------------|-----------------|----------------------------------------------------------
-/// `typename Phi::real_type`              | float or double | scalar of the latents
-/// `typename Phi::features_type`          | copyable        | its engine's handle of features, see attention_call
+/// `typename Phi::real_type`              | float or double | scalar of the latents, and `real_type` of its calls
+/// `typename Phi::features_type`          | copyable        | its engine's handle of features [frames, tokens,
+///                                        |                 | channels], and `features_type` of its calls
 /// `phi.latent_channels()`                | size_t          | channels of z
 /// `phi.latent_grid()`                    | grid_extents    | height and width of z
-/// `phi.sites()`                          | attention_sites | its self-attention modules, a random access range;
-///                                        |                 | attention_place::site counts in this order
+/// `phi.sites()`                          | attention_sites | its self-attention modules, the same in every call
 /// `phi.branches()`                       | size_t          | guidance branches it runs: 1, or 2 with classifier-free
 ///                                        |                 | guidance
 /// `phi(x0, z, sigma, frames, processor)` | void            | writes D(z, sigma) [EDM sec. 3], the estimate of the
@@ -34,13 +50,36 @@ namespace genrender {
 ///                                        |                 | height, width]; `frames[i]` says which frame of the
 ///                                        |                 | animation entry i is; z = clean + sigma * noise
 ///
-/// These the compiler cannot check, and a model owes them (tests/support/denoiser_laws.hpp checks them):
+/// All members are const. x0 and z of the library's calls are row-major without gaps, so that `z.data()` can be handed
+/// to an engine; what x0 holds before the call is not to be read. `processor` is of any type that models
+/// attention_processor for the engine's calls, so operator() is a template; it is an lvalue, const or not.
+///
+/// What is run at a site. Where module s of branch b has normed its input f, [frames, tokens, channels] with the tokens
+/// of sites()[s].grid row by row, the denoiser makes a call, a model of attention_call with the operations of its own
+/// engine, and takes the module's output from the processor instead of computing it:
+///
+///     my_call call(...);                                // call.place() is {s, b}, call.frames() is `frames`
+///     typename Phi::features_type F = processor(call);  // then the output projection, and the residual is added
+///
+/// so `my_call::features_type` is `Phi::features_type` and `my_call::real_type` is `Phi::real_type`. `call` is an lvalue
+/// that lives until the processor returns; handles that it gave out may live on (F_KF is kept until the step ends), so
+/// nobody may write into the memory of F. For features in host memory the library has the handle host_features and the
+/// call host_attention_call. An engine whose graph is static and cannot call back asks the processor by `inputs_at` and
+/// `record_features` instead (feature_io_processor in injection/feature_io.hpp) and needs no attention_call.
+///
+/// These the compiler cannot check, and a model owes them (check_denoiser_laws of testing/denoiser_laws.hpp checks them,
+/// check_attention_call_laws of testing/attention_call_laws.hpp its calls):
 /// every site is run once per branch and call, with all frames of the stack at once; with plain_attention the estimate
-/// of a frame does not depend on the other frames of the stack; equal arguments give equal results; z is not changed;
-/// calls for different frames may run at the same time on several threads if the caller uses more than one.
+/// of a frame does not depend on the other frames of the stack; equal arguments give equal results; all of x0 is
+/// written; z is not changed; calls for different frames may run at the same time on several threads if the caller uses
+/// more than one. Branches and sites may be run in any order. The maps that are rendered must be a whole multiple of the
+/// latent grid and of every feature grid.
 /// It does not require to be a neural network, to be differentiable, or to know of keyframes, noise or textures.
 ///
-/// See also: attention_processor, what it runs; sequence_denoiser, which turns it into a denoiser of whole animations.
+/// Optional capabilities: stoppable_denoiser and residual_lender (keyframes/stoppable_denoiser.hpp) of the denoiser,
+/// storing_attention_call (attention/feature_storage.hpp) of its calls, shaped_features (attention/attention_call.hpp)
+/// of its features. See also: attention_processor, what it runs; sequence_denoiser, which turns it into a denoiser of
+/// whole animations.
 template <class Phi>
 concept denoiser = std::floating_point<typename Phi::real_type> && std::copyable<typename Phi::features_type> &&
     requires(Phi const& phi, strided_view<typename Phi::real_type, 4> x0,
@@ -48,7 +87,7 @@ concept denoiser = std::floating_point<typename Phi::real_type> && std::copyable
              std::span<frame_index const> frames, attention_processor_archetype& processor) {
     { phi.latent_channels() } -> std::convertible_to<std::size_t>;
     { phi.latent_grid() } -> std::convertible_to<grid_extents>;
-    { phi.sites() } -> std::ranges::random_access_range;
+    { phi.sites() } -> attention_sites;
     { phi.branches() } -> std::convertible_to<std::size_t>;
     phi(x0, z, sigma, frames, processor);
 };
@@ -70,7 +109,7 @@ consteval void require_denoiser() {
         "denoiser: latent_channels() is const and returns a number, latent_grid() is const and returns grid_extents");
     static_assert(
         requires(Phi const& phi) {
-            { phi.sites() } -> std::ranges::random_access_range;
+            { phi.sites() } -> attention_sites;
         },
         "denoiser: sites() is const and returns a random access range of attention_site");
     static_assert(

@@ -26,13 +26,6 @@ Latents euler_step(Latents const& z, Latents const& x0, Real sigma, Real sigma_n
 
 namespace detail {
 
-/// Latents whose elements the library can see: samplers go through them once a step and allocate nothing.
-template <class Latents, class Real>
-concept viewed_latents = requires(Latents& z, Latents const& x0) {
-    { to_view(z).data() } -> std::same_as<Real*>;
-    { to_view(x0).data() } -> std::same_as<Real const*>;
-};
-
 /// out = sum of factors times `in`. Throws shape_error for estimates of other extents than z.
 template <class Real, class Latents, class... In>
 void combine_latents(Latents& out, std::array<Real, sizeof...(In)> const& factors, In const&... in) {

@@ -44,6 +44,19 @@ struct nothing_after_step {
     void operator()(std::size_t, Latents&) const {}
 };
 
+/// Latents whose elements the library can see, an optional capability of what samplers move: they then go through them
+/// once a step and allocate nothing; others are added and multiplied by their own operators.
+///
+/// expression   | type               | meaning
+/// -------------|--------------------|-----------------------------------------------------------------------------
+/// `to_view(z)` | strided_view<Real> | the elements, constant ones of constant latents; found in the namespace of the
+///              |                    | latents
+template <class Latents, class Real>
+concept viewed_latents = requires(Latents& z, Latents const& x0) {
+    { to_view(z).data() } -> std::same_as<Real*>;
+    { to_view(x0).data() } -> std::same_as<Real const*>;
+};
+
 /// Throws shape_error for fewer than 2 levels; value_error unless they are finite, at least 0 and strictly falling.
 template <noise_levels Sigmas>
 void require_noise_levels(char const* function, Sigmas const& sigmas) {

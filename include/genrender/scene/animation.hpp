@@ -54,11 +54,12 @@ inline posed_object pose(object_index object, std::shared_ptr<mesh const> surfac
 /// `scene.frame_count()` | convertible to `std::size_t`  | number of frames
 /// `scene.frame(i)`      | convertible to `posed_scene`  | frame i, for `i.value < scene.frame_count()`
 ///
-/// These the compiler cannot check, and a model owes them: frame(i) depends on i alone, whatever was asked before, and
+/// These the compiler cannot check, and a model owes them (check_animation_laws of testing/animation_laws.hpp checks
+/// them): frame(i) depends on i alone, whatever was asked before, and
 /// may be called by several threads at once; an object number names the same surface, with the same UVs and triangles,
 /// in every frame that shows it (this is what a point on a texture keeps its appearance by); no two objects of a frame
 /// share a number.
-/// See also: rasterize, which turns an animation into guidance maps.
+/// See also: rasterize, which turns an animation into maps.
 template <class Animation>
 concept animation = requires(Animation const& scene, frame_index i) {
     { scene.frame_count() } -> std::convertible_to<std::size_t>;

@@ -3,6 +3,8 @@
 // of it.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/sampling/denoiser.hpp>
 
@@ -108,3 +110,5 @@ private:
 };
 
 } // namespace genrender::testing
+
+#include <genrender/core/end_header.inl>

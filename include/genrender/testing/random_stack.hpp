@@ -2,6 +2,8 @@
 // Stacks filled with N(0, 1), the same for the same seed.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #include <genrender/core/random.hpp>
 #include <genrender/core/stack.hpp>
 
@@ -11,6 +13,7 @@
 
 namespace genrender::testing {
 
+/// A stack of numbers of N(0, 1), the same for the same extents and seed on every machine.
 template <class Real, std::size_t Rank>
 stack<Real, Rank> random_stack(std::array<std::size_t, Rank> const& extents, std::uint64_t seed) {
     stack<Real, Rank> values(extents);
@@ -22,3 +25,5 @@ stack<Real, Rank> random_stack(std::array<std::size_t, Rank> const& extents, std
 }
 
 } // namespace genrender::testing
+
+#include <genrender/core/end_header.inl>
