@@ -152,11 +152,13 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     baselines/token_propagation.hpp
     baselines/tokenflow.hpp
     testing/analytic_denoiser.hpp
+    testing/at_once.hpp
     testing/attention_call_laws.hpp
     testing/attention_processor_laws.hpp
     testing/correspondence_laws.hpp
     testing/denoiser_laws.hpp
     testing/law_report.hpp
+    testing/parallel_loop_laws.hpp
     testing/random_stack.hpp
     testing/sequence_method_laws.hpp)
 

@@ -18,6 +18,8 @@ namespace {
 
 struct handle {};
 using least = attention_call_archetype<handle, float>;
+static_assert(!shaped_features<handle>);
+static_assert(shaped_features<host_features<float>>);
 
 // Each hides one member of the least call behind something that cannot be called as the concept asks.
 struct without_place : least {

@@ -104,6 +104,8 @@ TEST_SUITE("attention/attention_processor") {
             bool is_plain_at(attention_place place) const { return place.site.value == 1; }
         };
         struct silent {};
+        CHECK(partly_plain_processor<plain_at_one>);
+        CHECK_FALSE(partly_plain_processor<silent>);
         CHECK(is_plain_at(plain_at_one{}, {{1}, 0}));
         CHECK_FALSE(is_plain_at(plain_at_one{}, {{2}, 0}));
         CHECK_FALSE(is_plain_at(silent{}, {{1}, 0}));

@@ -35,6 +35,11 @@ struct not_const_loop {
     void operator()(std::size_t, Body&&) {}
 };
 
+/// Takes what remembers nothing, which the library's bodies do.
+struct loop_of_functions {
+    void operator()(std::size_t, void (*)(std::size_t)) const {}
+};
+
 struct loop_without_count {
     template <class Body>
     void operator()(Body&&) const {}
@@ -67,6 +72,7 @@ TEST_SUITE("core/parallel") {
         CHECK_FALSE(parallel_loop<not_const_loop>);
         CHECK_FALSE(parallel_loop<loop_without_count>);
         CHECK_FALSE(parallel_loop<int>);
+        CHECK_FALSE(parallel_loop<loop_of_functions>);
         auto const lambda = [](std::size_t count, auto&& body) { sequential_loop{}(count, body); };
         CHECK(parallel_loop<decltype(lambda)>);
         CHECK(visits(lambda, 3) == std::vector<int>(3, 1));

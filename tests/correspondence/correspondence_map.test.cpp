@@ -28,11 +28,16 @@ struct with_sentinel {
     std::optional<token_index> token_at(frame_index, int) const;
 };
 
+struct visits_by_pointer : testing::shifted_strip {
+    void visit_tokens(frame_index, point_type, void (*visit)(token_index, double)) const; // no function that remembers
+};
+
 static_assert(correspondence_map<correspondence_map_archetype>);
 static_assert(correspondence_map<texel_grid>);
 static_assert(weighted_correspondence_map<texel_grid>);
 static_assert(correspondence_map<testing::shifted_strip>);
 static_assert(!weighted_correspondence_map<testing::shifted_strip>);
+static_assert(correspondence_map<visits_by_pointer> && !weighted_correspondence_map<visits_by_pointer>);
 static_assert(!correspondence_map<without_grid>);
 static_assert(!correspondence_map<with_sentinel>);
 

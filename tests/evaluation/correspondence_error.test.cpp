@@ -26,6 +26,9 @@ using genrender::testing::random_stack;
 
 namespace {
 
+static_assert(point_of_object<texel>);
+static_assert(!point_of_object<std::uint32_t>);
+
 /// A strip of points that slides by one pixel a frame under a window of four: pixel p of frame i shows point p + i, and
 /// point 3 is hidden in frame 1.
 struct sliding_strip {

@@ -31,6 +31,10 @@ function(write_house)
     file(WRITE ${COPY}/include/genrender/scene/mesh.hpp "// SPDX-License-Identifier: MIT\n// Mesh.\n${begin}\
 #define GENRENDER_KERNELS <genrender/scene/mesh.inl>\n${end}")
     file(WRITE ${COPY}/include/genrender/scene/mesh.inl "// SPDX-License-Identifier: MIT\n// Its body.\n")
+    file(WRITE ${COPY}/include/genrender/testing/mesh_laws.hpp "// SPDX-License-Identifier: MIT\n// Laws.\n${begin}\
+#include <genrender/scene/mesh.hpp>\n#include <genrender/testing/thing_laws.hpp>\n${end}")
+    file(WRITE ${COPY}/include/genrender/testing/thing_laws.hpp "// SPDX-License-Identifier: MIT\n// Laws.\n${begin}\
+#include <genrender/blending/thing.hpp>\n${end}")
     file(WRITE ${COPY}/include/genrender/blending/thing.hpp "${header}")
     file(WRITE ${COPY}/include/genrender/genrender.hpp "// SPDX-License-Identifier: MIT\n// All.\n\
 #include <genrender/core/index.hpp>\n#include <genrender/blending/thing.hpp>\n")
@@ -41,17 +45,19 @@ function(write_house)
     file(WRITE ${COPY}/cmake/components.cmake "${macros}
 genrender_package(fast TARGET fast::fast INCLUDES \"fast/\")
 genrender_package(text TARGET text::text INCLUDES \"text/\")
-genrender_component(core PACKAGES fast HEADERS genrender.hpp core/index.hpp blending/thing.hpp)
-genrender_component(scene HEADERS scene.hpp scene/mesh.hpp scene/mesh.inl)
+genrender_component(core PACKAGES fast HEADERS genrender.hpp core/index.hpp blending/thing.hpp
+    testing/thing_laws.hpp)
+genrender_component(scene HEADERS scene.hpp scene/mesh.hpp scene/mesh.inl testing/mesh_laws.hpp)
 genrender_component(reference PACKAGES text HEADERS reference.hpp reference/network.hpp)
 ")
     file(WRITE ${COPY}/tests/CMakeLists.txt "genrender_test_room(core index)\ngenrender_test_room(reference network)\n\
-genrender_test_room(scene mesh)\ngenrender_test_room(blending\n    thing)\n")
+genrender_test_room(scene mesh)\ngenrender_test_room(blending\n    thing)\n\
+genrender_test_room(testing thing_laws)\ngenrender_test_room(testing mesh_laws NAME others)\n")
     file(WRITE ${COPY}/benchmarks/CMakeLists.txt "# Benchmarks\ngenrender_benchmark(blending thing)\n")
     file(WRITE ${COPY}/benchmarks/blending/thing.bench.cpp "// SPDX-License-Identifier: MIT\n// Its speed.\n")
     file(WRITE ${COPY}/examples/CMakeLists.txt
         "# Examples\ngenrender_example(story)\ngenrender_example_test(\"a story\" story)\n")
-    foreach(name IN ITEMS core/index scene/mesh reference/network)
+    foreach(name IN ITEMS core/index scene/mesh reference/network testing/mesh_laws testing/thing_laws)
         file(WRITE ${COPY}/tests/${name}.test.cpp "// SPDX-License-Identifier: MIT\n// Its test.\n\
 #include <genrender/${name}.hpp>\nTEST_SUITE(\"${name}\") {\n    TEST_CASE(\"holds\") {}\n}\n")
     endforeach()
@@ -112,6 +118,14 @@ mutate(${thing} "" "#include <genrender/injection/x.hpp>\n" "includes downstream
 mutate(${thing} "" "#include <genrender/genrender.hpp>\n" "includes the umbrella genrender.hpp")
 mutate(${thing} "" "#include <genrender/scene/mesh.hpp>\n" "thing.hpp: includes downstream, from scene")
 mutate(${network} "" "#include <genrender/scene/mesh.hpp>\n" "network.hpp: includes scene, another component")
+set(laws include/genrender/testing/thing_laws.hpp)
+mutate(${laws} "" "#include <genrender/scene/mesh.hpp>\n" "thing_laws.hpp: includes downstream, from scene")
+mutate(include/genrender/testing/mesh_laws.hpp "" "#include <genrender/reference/network.hpp>\n"
+    "mesh_laws.hpp: includes .*reference")
+mutate(${thing} "" "#include <genrender/testing/thing_laws.hpp>\n" "thing.hpp: includes downstream, from testing")
+mutate(${components} "testing/thing_laws.hpp" "" "thing_laws.hpp: is not among the headers of core")
+mutate(include/genrender/genrender.hpp "" "#include <genrender/testing/thing_laws.hpp>\n"
+    "thing_laws.hpp>, which is not of core")
 mutate(${network} "" "#include <genrender/scene.hpp>\n" "network.hpp: includes the umbrella scene.hpp")
 mutate(${thing} "" "#include \"index.hpp\"\n" "includes with quotes")
 mutate(${thing} "" "#include <xtensor/xsort.hpp>\n" "only core/tensor.hpp may")
@@ -122,7 +136,7 @@ mutate(${components} " blending/thing.hpp" "" "thing.hpp: is not among the heade
 mutate(${components} "scene/mesh.hpp " "" "mesh.hpp: is not among the headers of scene")
 mutate(${components} " scene/mesh.inl" "" "mesh.inl: is not among the headers of scene")
 mutate(${components} "genrender.hpp " "" "genrender.hpp: is not among the headers of core")
-mutate(${components} "HEADERS scene.hpp scene/mesh.hpp scene/mesh.inl" "" "scene.hpp: is not among the headers of scene")
+mutate(${components} "HEADERS scene.hpp scene/mesh.hpp scene/mesh.inl testing/mesh_laws.hpp" "" "scene.hpp: is not among the headers of scene")
 mutate(include/genrender/scene/mesh.inl "// Its body.\n" "" "mesh.inl: starts with")
 mutate(include/genrender/scene/mesh.inl "" "${many_lines}" "mesh.inl: 302 lines")
 mutate(include/genrender/scene/mesh.hpp "<genrender/scene/mesh.inl>" "" "mesh.inl: is included by no header")

@@ -33,6 +33,12 @@ struct maps_of_another_dimension {
     std::array<float, 2> point_at(frame_index, pixel) const; // two coordinates where three are promised
 };
 
+struct maps_of_one_dimension : maps_of_another_dimension {
+    static constexpr std::size_t dimensions = 1;
+    std::array<float, 1> point_at(frame_index, pixel) const;
+};
+
+static_assert(!canonical_maps<maps_of_one_dimension>);
 static_assert(canonical_maps<uv_maps_view>);
 static_assert(canonical_maps<position_maps_view>);
 static_assert(uv_maps_view::dimensions == 2);

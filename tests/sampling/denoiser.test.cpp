@@ -7,6 +7,11 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <list>
+#include <string>
+#include <vector>
+
 using namespace genrender;
 
 namespace {
@@ -46,6 +51,24 @@ struct without_processor {
     void operator()(strided_view<float, 4>, strided_view<float const, 4>, float, std::span<frame_index const>) const;
 };
 
+struct sites_are_numbers : complete {
+    std::vector<int> sites() const;
+};
+struct sites_are_names : complete {
+    std::vector<std::string> sites() const;
+};
+struct sites_are_a_list : complete {
+    std::list<attention_site> sites() const;
+};
+struct sites_by_value : complete {
+    std::vector<attention_site> sites() const;
+};
+
+static_assert(!denoiser<sites_are_numbers>);
+static_assert(!denoiser<sites_are_names>);
+static_assert(!denoiser<sites_are_a_list>);
+static_assert(denoiser<sites_by_value>);
+static_assert(attention_sites<std::array<attention_site, 2> const&>);
 static_assert(denoiser<complete>);
 static_assert(denoiser<testing::analytic_denoiser<float>>);
 static_assert(denoiser<testing::analytic_denoiser<double>>);

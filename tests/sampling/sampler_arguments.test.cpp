@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <genrender/core/stack.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 
 #include <array>
@@ -34,6 +35,9 @@ struct changes_its_latents {
 struct gives_nothing {
     void operator()(double, double) const {}
 };
+static_assert(viewed_latents<stack<float, 4>, float>);
+static_assert(!viewed_latents<stack<float, 4>, double>);
+static_assert(!viewed_latents<double, double>);
 static_assert(clean_estimator<halves, double, double>);
 static_assert(clean_estimator<halves const, double, double>);
 static_assert(!clean_estimator<changes_its_latents, double, double>);

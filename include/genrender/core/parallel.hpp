@@ -19,21 +19,6 @@
 
 namespace genrender {
 
-/// Runs `body(i)` once for every i in [0, count), in any order, possibly at once, and returns when all are done.
-///
-/// expression            | type | meaning
-/// ----------------------|------|----------------------------------------------------------------------
-/// `loop(count, body)`   | any  | calls `body(i)` once for each `i < count`
-///
-/// These the compiler cannot check, and a model owes them: every index is visited exactly once; nothing runs after the
-/// return; an exception of the body reaches the caller (the first one; indices not yet begun may then be left out).
-/// Results of the library do not depend on the model or on its number of threads. The library keeps a copy of a loop
-/// (any_loop); one that cannot be copied is handed over as std::cref(loop).
-template <class Loop>
-concept parallel_loop = requires(Loop const& loop, std::size_t count, void (*body)(std::size_t)) {
-    loop(count, body);
-};
-
 /// What a loop calls with each of its indices, whatever its type: a reference to a function that outlives the loop.
 class loop_body {
 public:
@@ -50,6 +35,23 @@ public:
 private:
     void const* body_;
     void (*call_)(void const*, std::size_t);
+};
+
+/// Runs `body(i)` once for every i in [0, count), in any order, possibly at once, and returns when all are done.
+///
+/// expression            | type | meaning
+/// ----------------------|------|----------------------------------------------------------------------
+/// `loop(count, body)`   | any  | calls `body(i)` once for each `i < count`; body is a loop_body, which
+///                       |      | a std::function<void(std::size_t)> or a template parameter takes
+///
+/// These the compiler cannot check, and a model owes them (check_parallel_loop_laws of testing/parallel_loop_laws.hpp
+/// checks them): every index is visited exactly once; nothing runs after the return; a body may run the loop itself; an
+/// exception of the body reaches the caller (the first one; indices not yet begun may then be left out). Results of the
+/// library do not depend on the model or on its number of threads. The library keeps a copy of a loop (any_loop); one
+/// that cannot be copied is handed over as std::cref(loop).
+template <class Loop>
+concept parallel_loop = requires(Loop const& loop, std::size_t count, loop_body const& body) {
+    loop(count, body);
 };
 
 /// The loop on the caller's thread, in order.

@@ -69,6 +69,11 @@ consteval void require_correspondence_map() {
         "correspondence_map: token_at(frame, point) is const and returns std::optional<token_index>");
 }
 
+/// The least that a visitor of weighted tokens is, for checking maps; never run.
+struct token_visitor_archetype {
+    void operator()(token_index token, double weight) const;
+};
+
 /// A correspondence_map that answers with several tokens and weights, an optional capability: a token that another map
 /// finds counts fully and alone.
 ///
@@ -76,10 +81,11 @@ consteval void require_correspondence_map() {
 /// ----------------------------------------|------|-------------------------------------------------------------------
 /// `map.visit_tokens(frame, point, visit)` | any  | calls `visit(token_index, double weight)` for each token of the
 ///                                         |      | frame that shows the point, weights above 0 that sum to 1; never
-///                                         |      | where token_at finds none. `visit` is of any type
+///                                         |      | where token_at finds none; a template for every `visit`
 template <class Map>
 concept weighted_correspondence_map = correspondence_map<Map> &&
-    requires(Map const& map, frame_index i, typename Map::point_type const& point, void (*visit)(token_index, double)) {
+    requires(Map const& map, frame_index i, typename Map::point_type const& point,
+             token_visitor_archetype const& visit) {
     map.visit_tokens(i, point, visit);
 };
 

@@ -45,13 +45,15 @@ concept stoppable_denoiser = denoiser<Phi> &&
 /// expression                                                 | type            | meaning
 /// -----------------------------------------------------------|-----------------|--------------------------------------
 /// `typename Phi::residuals_type`                             | movable         | what is lent; made without arguments
-/// `phi.run_until(z, sigma, frames, processor, last, lent)`   | void            | as above, and fills in `*lent`
-/// `phi(x0, z, sigma, frames, processor, lent)`               | void            | as without `lent`, to the bit
+/// `phi.run_until(z, sigma, frames, processor, last, &lent)`  | void            | as above, and fills in `lent` unless
+///                                                            |                 | the pointer is null
+/// `phi(x0, z, sigma, frames, processor, lent)`               | void            | as without `lent`, to the bit; lent is
+///                                                            |                 | const
 /// `phi.residual_bytes()`                                     | size_t          | what is lent takes a frame
 ///
 /// The model decides what is equal: it reuses only what both processors leave as it is (is_plain_at), and only for
-/// frames, z and sigma that are those of the first call. `lent` may be null in run_until. The estimates may be asked for
-/// from several threads with one `lent` (check_denoiser_laws checks that what is lent changes no estimate).
+/// frames, z and sigma that are those of the first call. The estimates may be asked for from several threads with one
+/// `lent` (check_denoiser_laws checks that what is lent changes no estimate).
 template <class Phi>
 concept residual_lender = stoppable_denoiser<Phi> && std::movable<typename Phi::residuals_type> &&
     std::default_initializable<typename Phi::residuals_type> &&

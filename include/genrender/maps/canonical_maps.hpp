@@ -34,7 +34,8 @@ namespace genrender {
 ///
 /// Models: uv_maps_view, position_maps_view.
 template <class Maps>
-concept canonical_maps = std::copy_constructible<Maps> && requires(Maps const& maps, frame_index i, pixel p) {
+concept canonical_maps = std::copy_constructible<Maps> &&(Maps::dimensions == 2 || Maps::dimensions == 3) &&
+                         requires(Maps const& maps, frame_index i, pixel p) {
     { maps.frame_count() } -> std::convertible_to<std::size_t>;
     { maps.grid() } -> std::convertible_to<grid_extents>;
     { maps.is_covered(i, p) } -> std::same_as<bool>;
@@ -45,10 +46,9 @@ concept canonical_maps = std::copy_constructible<Maps> && requires(Maps const& m
 /// Fails to compile with a sentence for what canonical maps lack.
 template <class Maps>
 consteval void require_canonical_maps() {
-    static_assert(
-        canonical_maps<Maps>,
-        "canonical_maps: maps can be copied and have dimensions, frame_count(), grid(), is_covered(frame, pixel), "
-        "object_at(frame, pixel) and point_at(frame, pixel), all const");
+    static_assert(canonical_maps<Maps>, "canonical_maps: maps can be copied and have dimensions of 2 or 3, "
+                                        "frame_count(), grid(), is_covered(frame, pixel), "
+                                        "object_at(frame, pixel) and point_at(frame, pixel), all const");
 }
 
 /// Maps of an animation in their owner's memory, of D coordinates: full resolution, no antialiasing, floating point. A

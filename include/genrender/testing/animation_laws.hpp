@@ -4,10 +4,10 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/core/parallel.hpp>
 #include <genrender/scene/animation.hpp>
 #include <genrender/scene/camera.hpp>
 #include <genrender/scene/mesh.hpp>
+#include <genrender/testing/at_once.hpp>
 #include <genrender/testing/law_report.hpp>
 
 #include <cstddef>
@@ -79,10 +79,8 @@ law_report check_animation_laws(Animation const& scene) {
     }
     // Backwards and on two threads, every frame is what it was.
     std::vector<char> same(frames, 0);
-    threaded_loop{2}(frames, [&](std::size_t i) {
-        auto const frame = frames - 1 - i;
-        same[frame] = is_same_scene(in_order[frame], scene.frame({static_cast<std::uint32_t>(frame)}));
-    });
+    at_once(2, frames,
+            [&](std::size_t i) { same[i] = is_same_scene(in_order[i], scene.frame({static_cast<std::uint32_t>(i)})); });
     for (std::size_t i = 0; i < frames; ++i) {
         report.require(same[i] != 0, "animation: frame(i) depends on i alone, from any thread",
                        "another frame " + std::to_string(i) + " when asked again", "the same");

@@ -7,9 +7,9 @@
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/attention/host_features.hpp>
 #include <genrender/attention/plain_attention.hpp>
-#include <genrender/core/parallel.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/testing/analytic_denoiser.hpp>
+#include <genrender/testing/at_once.hpp>
 #include <genrender/testing/law_report.hpp>
 #include <genrender/testing/random_stack.hpp>
 
@@ -75,7 +75,7 @@ law_report check_attention_processor_laws(Processor& processor, std::span<frame_
     }
     // Places may run at the same time, and give what they gave one after the other.
     std::vector<host_features<Real>> again(places);
-    threaded_loop{2}(places, [&](std::size_t p) { again[p] = run_with(processor, p); });
+    at_once(2, places, [&](std::size_t p) { again[p] = run_with(processor, p); });
     for (std::size_t p = 0; p < places; ++p) {
         detail::require_same(report, "attention_processor: places may run at the same time, and again",
                              "F of " + place_text(p) + ", F", values(again[p]), outputs[p]);

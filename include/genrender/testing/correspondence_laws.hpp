@@ -6,8 +6,8 @@
 
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/core/finite.hpp>
-#include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
+#include <genrender/testing/at_once.hpp>
 #include <genrender/testing/law_report.hpp>
 
 #include <cstddef>
@@ -164,8 +164,8 @@ correspondence_report check_correspondence_laws(Map const& map) {
     }
     // On two threads, from the last frame on, every answer is what it was.
     std::vector<char> is_same(count, 1);
-    threaded_loop{2}(count, [&](std::size_t n) {
-        auto const i = static_cast<std::uint32_t>(count - 1 - n);
+    at_once(2, count, [&](std::size_t frame) {
+        auto const i = static_cast<std::uint32_t>(frame);
         for (std::uint32_t t = 0; t < tokens; ++t) {
             auto const point = map.point_at({i}, {t});
             for (std::uint32_t j = 0; point && j < count; ++j) {

@@ -6,18 +6,16 @@
 
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/finite.hpp>
-#include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 #include <genrender/sampling/denoiser.hpp>
+#include <genrender/testing/at_once.hpp>
 #include <genrender/testing/law_report.hpp>
 #include <genrender/testing/random_stack.hpp>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -268,23 +266,12 @@ law_report check_denoiser_laws(Phi const& phi, typename Phi::real_type sigma, de
                              trials.frame_of(together, i), trial.tolerance);
     }
     if (trial.threads > 1) {
-        std::vector<stack<Real, 4>> at_once(alone.size());
-        auto const threads = std::min(trial.threads, alone.size());
-        std::atomic<std::size_t> begun{0};
-        threaded_loop{threads}(threads, [&](std::size_t thread) {
-            // Calls are short, so threads wait a moment for each other: else one might be done before the next begins.
-            ++begun;
-            auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
-            while (begun < threads && std::chrono::steady_clock::now() < end) {
-            }
-            for (auto i = thread; i < alone.size(); i += threads) {
-                at_once[i] = trials.estimate_alone(i);
-            }
-        });
+        std::vector<stack<Real, 4>> beside_others(alone.size());
+        at_once(trial.threads, alone.size(), [&](std::size_t i) { beside_others[i] = trials.estimate_alone(i); });
         for (std::size_t i = 0; i < alone.size(); ++i) {
             detail::require_same(report, "denoiser: calls for different frames may run at the same time",
-                                 "frame " + std::to_string(trials.frames[i].value) + " on a thread, x0", at_once[i],
-                                 alone[i]);
+                                 "frame " + std::to_string(trials.frames[i].value) + " on a thread, x0",
+                                 beside_others[i], alone[i]);
         }
     }
 

@@ -5,9 +5,9 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/finite.hpp>
-#include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/evaluation/image_text_embedder.hpp>
+#include <genrender/testing/at_once.hpp>
 #include <genrender/testing/law_report.hpp>
 #include <genrender/testing/random_stack.hpp>
 
@@ -70,10 +70,7 @@ law_report check_embedder_laws(Embedder const& embedder, std::array<std::size_t,
     }
     // Backwards and on two threads, every vector is what it was.
     std::vector<char> same(images.size(), 0);
-    threaded_loop{2}(images.size(), [&](std::size_t i) {
-        auto const image = images.size() - 1 - i;
-        same[image] = embedder.embed_image(images[image].view()) == in_order[image];
-    });
+    at_once(2, images.size(), [&](std::size_t i) { same[i] = embedder.embed_image(images[i].view()) == in_order[i]; });
     for (std::size_t i = 0; i < images.size(); ++i) {
         report.require(same[i] != 0, "image_text_embedder: equal images give equal vectors, from any thread",
                        "another vector of image " + std::to_string(i) + " when asked again", "the same");
