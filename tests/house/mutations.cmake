@@ -65,6 +65,7 @@ genrender_test_room(testing thing_laws)\ngenrender_test_room(testing mesh_laws N
     file(WRITE ${COPY}/examples/story.cpp "// SPDX-License-Identifier: MIT\n// A story.\nint main() {\n\
     // readme:begin story\n    auto a = b[0];\n    // readme:end\n}\n")
     file(WRITE ${COPY}/README.md "${readme}")
+    file(WRITE ${COPY}/docs/customisation_points.md "# Points\n\n| `listed` | a thing |\n")
 endfunction()
 
 # Writes the healthy house, replaces `old` by `new` in a file (appends if `old` is empty) and expects the verdict to match.
@@ -118,6 +119,10 @@ mutate(${thing} "" "#include <genrender/injection/x.hpp>\n" "includes downstream
 mutate(${thing} "" "#include <genrender/genrender.hpp>\n" "includes the umbrella genrender.hpp")
 mutate(${thing} "" "#include <genrender/scene/mesh.hpp>\n" "thing.hpp: includes downstream, from scene")
 mutate(${network} "" "#include <genrender/scene/mesh.hpp>\n" "network.hpp: includes scene, another component")
+mutate(${thing} "${end}" "if constexpr (requires { a; })\n${end}" "thing.hpp: asks for an optional capability by an unnamed")
+mutate(${thing} "${end}" "\nconcept thinglike = true;\n${end}" "thing.hpp: docs/customisation_points.md has no row for .*thinglike")
+mutate(${thing} "${end}" "\nconcept listed =\n    true;\n${end}" nothing)
+mutate(${thing} "${end}" "\nnamespace detail {\nconcept hidden = true;\n} // namespace detail\n${end}" nothing)
 set(laws include/genrender/testing/thing_laws.hpp)
 mutate(${laws} "" "#include <genrender/scene/mesh.hpp>\n" "thing_laws.hpp: includes downstream, from scene")
 mutate(include/genrender/testing/mesh_laws.hpp "" "#include <genrender/reference/network.hpp>\n"

@@ -16,6 +16,7 @@
 #include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace genrender {
 
@@ -72,7 +73,7 @@ void require_value(bool holds, char const* function, char const* argument, Found
         return;
     }
     std::string found_text;
-    if constexpr (requires { std::to_string(found); }) {
+    if constexpr (std::is_arithmetic_v<Found>) {
         found_text = std::to_string(found);
     } else {
         found_text = std::string(found);
