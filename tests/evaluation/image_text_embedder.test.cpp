@@ -13,7 +13,6 @@
 using namespace genrender;
 using genrender::testing::check_embedder_laws;
 using genrender::testing::colour_embedder;
-using genrender::testing::is_embedding;
 
 namespace {
 
@@ -37,12 +36,5 @@ TEST_SUITE("evaluation/image_text_embedder") {
         static_assert(image_text_embedder<colour_embedder<Real>>);
         std::vector<std::string> const texts{"red", "white"};
         CHECK(check_embedder_laws(colour_embedder<Real>{}, {3, 5, 4}, texts).text() == "");
-    }
-
-    TEST_CASE("the laws refuse vectors of another length or without a direction") {
-        CHECK(is_embedding<float>({0, 1}, 2));
-        CHECK_FALSE(is_embedding<float>({0, 1}, 3));
-        CHECK_FALSE(is_embedding<float>({0, 0}, 2));
-        CHECK_FALSE(is_embedding<float>({1, std::numeric_limits<float>::infinity()}, 2));
     }
 }

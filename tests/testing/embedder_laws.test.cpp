@@ -53,6 +53,17 @@ TEST_SUITE("testing/embedder_laws") {
     } // namespace
 
     TEST_CASE("an embedder that keeps the laws has none to tell") { CHECK(report_on(lapse::none).text() == ""); }
+    TEST_CASE("vectors of another length, without a direction or not finite are refused") {
+        auto const text_of = [](std::vector<float> const& vector, std::size_t dimension) {
+            law_report report;
+            genrender::testing::detail::require_embedding(report, vector, dimension, "it");
+            return report.text();
+        };
+        CHECK(text_of({0, 1}, 2) == "");
+        CHECK(text_of({0, 1}, 3).find("vectors have dimension() elements") != std::string::npos);
+        CHECK(text_of({0, 0}, 2).find("vectors are not zero") != std::string::npos);
+        CHECK(text_of({1, std::numeric_limits<float>::infinity()}, 2).find("vectors are finite") != std::string::npos);
+    }
     TEST_CASE("each lapse is told by the law that it breaks") {
         CHECK(broken_laws(report_on(lapse::infinite)) == names{"image_text_embedder: vectors are finite"});
         CHECK(broken_laws(report_on(lapse::other_images)) ==

@@ -138,8 +138,8 @@ struct attention_run {
     }
 };
 
-/// D(z, sigma) of latents [2, 4, 6] by a network of one module on the latents' grid and one on half of it, guided by two
-/// branches; what it knows of a frame is its number.
+/// D(z, sigma) of latents [2, 4, 6] by a network of one module on the latents' grid and one on half of it, guided by
+/// two branches; what it knows of a frame is its number.
 class denoiser {
 public:
     using real_type = float;

@@ -32,8 +32,8 @@ using attention_sources = std::vector<std::vector<key_value_block<Features>>>;
 /// One run of one self-attention module, with the engine's own operations on the engine's own tensors: a processor
 /// never touches an element, so the features may lie on a device. A denoiser makes one for every site and branch of its
 /// call and hands it to its processor as an lvalue, which may call members in any order and as often as it likes.
-/// `features_type` is a cheap handle of a stack [frames, tokens, channels], as tensors of most engines are: copies share
-/// the elements.
+/// `features_type` is a cheap handle of a stack [frames, tokens, channels], as tensors of most engines are: copies
+/// share the elements.
 ///
 /// expression                           | type            | meaning
 /// -------------------------------------|-----------------|------------------------------------------------------------

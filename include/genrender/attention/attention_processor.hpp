@@ -11,8 +11,8 @@
 
 namespace genrender {
 
-/// Runs in place of a self-attention module and returns its output. A denoiser calls it once for every site and guidance
-/// branch of its call; the sequence_method makes it.
+/// Runs in place of a self-attention module and returns its output. A denoiser calls it once for every site and
+/// guidance branch of its call; the sequence_method makes it.
 ///
 /// expression        | type                  | meaning
 /// ------------------|-----------------------|-------------------------------------------------------------------------
@@ -28,8 +28,8 @@ namespace genrender {
 /// testing/attention_processor_laws.hpp checks them): F has the extents of `call.f()`, which is not changed; calls at
 /// different places, or for different frames, may run at the same time on several threads; the processor keeps no
 /// reference to the call, handles it may keep. An engine owes the processor that it does not write into F, which a
-/// recorder keeps: the residual is added elsewhere. It does not require to be copied, to know a network, or to be called
-/// in any order of sites.
+/// recorder keeps: the residual is added elsewhere. It does not require to be copied, to know a network, or to be
+/// called in any order of sites.
 ///
 /// Optional capability: partly_plain_processor.
 /// See also: plain_attention, recorder, injector and the baselines, which are models; attention_call, what it is given;

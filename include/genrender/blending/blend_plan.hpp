@@ -50,8 +50,8 @@ enum class texel_average : std::uint8_t {
     by_quality ///< by how well they see it, where the correspondence says (graded_correspondence_map)
 };
 
-/// A correspondence_map that answers for all tokens of a frame at once, an optional capability: others are asked token by
-/// token.
+/// A correspondence_map that answers for all tokens of a frame at once, an optional capability: others are asked token
+/// by token.
 ///
 /// expression              | type                                    | meaning
 /// ------------------------|-----------------------------------------|------------------------------------------------

@@ -89,8 +89,8 @@ concept weighted_correspondence_map = correspondence_map<Map> &&
     map.visit_tokens(i, point, visit);
 };
 
-/// A correspondence_map that says how well a frame shows a point, an optional capability: with others all keyframes that
-/// see a point weigh alike, whatever `settings.average` says.
+/// A correspondence_map that says how well a frame shows a point, an optional capability: with others all keyframes
+/// that see a point weigh alike, whatever `settings.average` says.
 ///
 /// expression                     | type   | meaning
 /// -------------------------------|--------|--------------------------------------------------------------------------

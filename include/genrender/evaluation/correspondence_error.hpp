@@ -27,8 +27,8 @@ struct interval_error {
     std::optional<double> error; ///< none without pairs
 };
 
-/// A surface point that names its object, an optional capability of a correspondence_map's point_type; without it objects
-/// cannot be chosen.
+/// A surface point that names its object, an optional capability of a correspondence_map's point_type; without it
+/// objects cannot be chosen.
 ///
 /// expression     | type         | meaning
 /// ---------------|--------------|------------------------------------------------------------------------------------

@@ -25,10 +25,10 @@ namespace genrender {
 ///                                  |                     | embedder's own affair
 /// `embedder.embed_text(text)`      | vector of real_type | of a text in UTF-8
 ///
-/// These the compiler cannot check, and a model owes them (check_embedder_laws of testing/embedder_laws.hpp
-/// checks them): vectors have `dimension()` finite elements and are not zero; equal arguments give equal vectors; the image is not changed; calls
-/// may run at the same time on several threads if the caller uses more than one. Vectors need not have length 1, and a
-/// text or a size that the embedder does not know may be refused with an exception.
+/// These the compiler cannot check, and a model owes them (check_embedder_laws of testing/embedder_laws.hpp checks
+/// them): vectors have `dimension()` finite elements and are not zero; equal arguments give equal vectors; the image is
+/// not changed; calls may run at the same time on several threads if the caller uses more than one. Vectors need not
+/// have length 1, and a text or a size that the embedder does not know may be refused with an exception.
 /// See also: embed_frames; frame_consistency, prompt_fidelity and recognition, which are computed from its vectors.
 template <class Embedder>
 concept image_text_embedder = std::floating_point<typename Embedder::real_type> &&

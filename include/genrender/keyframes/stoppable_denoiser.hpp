@@ -47,8 +47,8 @@ concept stoppable_denoiser = denoiser<Phi> &&
 /// `typename Phi::residuals_type`                             | movable         | what is lent; made without arguments
 /// `phi.run_until(z, sigma, frames, processor, last, &lent)`  | void            | as above, and fills in `lent` unless
 ///                                                            |                 | the pointer is null
-/// `phi(x0, z, sigma, frames, processor, lent)`               | void            | as without `lent`, to the bit; lent is
-///                                                            |                 | const
+/// `phi(x0, z, sigma, frames, processor, lent)`               | void            | as without `lent`, to the bit, which
+///                                                            |                 | is const
 /// `phi.residual_bytes()`                                     | size_t          | what is lent takes a frame
 ///
 /// The model decides what is equal: it reuses only what both processors leave as it is (is_plain_at), and only for

@@ -27,10 +27,10 @@ namespace genrender {
 /// `maps.point_at(i, p)`     | array<float, D>     | its canonical coordinates; equal ones are one surface point
 ///
 /// All members are const. Maps can be copied, as cheaply as views: who finds correspondences in them keeps them.
-/// object_at and point_at are asked of covered pixels alone. `render` asks from several threads if its loop has several,
-/// refuses coordinates that are not finite, and wants a grid that is a whole multiple of the denoiser's latent and
-/// feature grids. No check of testing/ is needed beyond that: preflight (inspection/preflight.hpp) looks at what the maps
-/// say.
+/// object_at and point_at are asked of covered pixels alone. `render` asks from several threads if its loop has
+/// several, refuses coordinates that are not finite, and wants a grid that is a whole multiple of the denoiser's latent
+/// and feature grids. No check of testing/ is needed beyond that: preflight (inspection/preflight.hpp) looks at what
+/// the maps say.
 ///
 /// Models: uv_maps_view, position_maps_view.
 template <class Maps>

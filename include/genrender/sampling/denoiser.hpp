@@ -16,18 +16,18 @@
 
 namespace genrender {
 
-/// The self-attention modules of a denoiser, in the order in which attention_place::site counts them: a vector, an array
-/// or a span of attention_site, or what is read like one.
+/// The self-attention modules of a denoiser, in the order in which attention_place::site counts them: a vector, an
+/// array or a span of attention_site, or what is read like one.
 ///
 /// expression                 | type            | meaning
-/// ---------------------------|-----------------|-----------------------------------------------------------------------
+/// ---------------------------|-----------------|----------------------------------------------------------------------
 /// `std::ranges::size(sites)` | size_t          | number of modules; sites are a random access range
-/// `sites[s]`                 | attention_site  | what module s is: its name, network, part, grid and channels. The range
-///                            |                 | gives attention_site const&, or what converts to it
+/// `sites[s]`                 | attention_site  | what module s is: its name, network, part, grid and channels; of
+///                            |                 | type attention_site const&, or what converts to it
 template <class Sites>
 concept attention_sites = std::ranges::random_access_range<Sites> && std::ranges::sized_range<Sites> &&
-    std::convertible_to<std::ranges::range_reference_t<Sites>, attention_site const&>&& requires(Sites&& sites,
-                                                                                                 std::size_t s) {
+    requires(Sites&& sites, std::size_t s) {
+    requires std::convertible_to<std::ranges::range_reference_t<Sites>, attention_site const&>;
     { sites[s] } -> std::convertible_to<attention_site const&>;
 };
 
@@ -61,20 +61,20 @@ concept attention_sites = std::ranges::random_access_range<Sites> && std::ranges
 ///     my_call call(...);                                // call.place() is {s, b}, call.frames() is `frames`
 ///     typename Phi::features_type F = processor(call);  // then the output projection, and the residual is added
 ///
-/// so `my_call::features_type` is `Phi::features_type` and `my_call::real_type` is `Phi::real_type`. `call` is an lvalue
-/// that lives until the processor returns; handles that it gave out may live on (F_KF is kept until the step ends), so
-/// nobody may write into the memory of F. For features in host memory the library has the handle host_features and the
-/// call host_attention_call. An engine whose graph is static and cannot call back asks the processor by `inputs_at` and
-/// `record_features` instead (feature_io_processor in injection/feature_io.hpp) and needs no attention_call.
+/// so `my_call::features_type` is `Phi::features_type` and `my_call::real_type` is `Phi::real_type`. `call` is an
+/// lvalue that lives until the processor returns; handles that it gave out may live on (F_KF is kept until the step
+/// ends), so nobody may write into the memory of F. For features in host memory the library has the handle
+/// host_features and the call host_attention_call. An engine whose graph is static and cannot call back asks the
+/// processor by `inputs_at` and `record_features` instead (feature_io_processor in injection/feature_io.hpp) and needs
+/// no attention_call.
 ///
-/// These the compiler cannot check, and a model owes them (check_denoiser_laws of testing/denoiser_laws.hpp checks them,
-/// check_attention_call_laws of testing/attention_call_laws.hpp its calls):
-/// every site is run once per branch and call, with all frames of the stack at once; with plain_attention the estimate
-/// of a frame does not depend on the other frames of the stack; equal arguments give equal results; all of x0 is
-/// written; z is not changed; calls for different frames may run at the same time on several threads if the caller uses
-/// more than one. Branches and sites may be run in any order. The maps that are rendered must be a whole multiple of the
-/// latent grid and of every feature grid.
-/// It does not require to be a neural network, to be differentiable, or to know of keyframes, noise or textures.
+/// These the compiler cannot check, and a model owes them (check_denoiser_laws of testing/denoiser_laws.hpp checks
+/// them, check_attention_call_laws of testing/attention_call_laws.hpp its calls): every site is run once per branch and
+/// call, with all frames of the stack at once; with plain_attention the estimate of a frame does not depend on the
+/// other frames of the stack; equal arguments give equal results; all of x0 is written; z is not changed; calls for
+/// different frames may run at the same time on several threads if the caller uses more than one. Branches and sites
+/// may be run in any order. The maps that are rendered must be a whole multiple of the latent grid and of every feature
+/// grid. It does not require to be a neural network, to be differentiable, or to know of keyframes, noise or textures.
 ///
 /// Optional capabilities: stoppable_denoiser and residual_lender (keyframes/stoppable_denoiser.hpp) of the denoiser,
 /// storing_attention_call (attention/feature_storage.hpp) of its calls, shaped_features (attention/attention_call.hpp)

@@ -14,8 +14,8 @@
 namespace genrender::testing {
 
 /// Calls `body(i)` once for each `i < count`, from the last to the first, shared out among at most `threads` threads.
-/// Bodies may be short, so threads wait for each other, for a second at most, before their first: else one might be done
-/// with all before the next begins. The first exception of a body reaches the caller.
+/// Bodies may be short, so threads wait for each other, for a second at most, before their first: else one might be
+/// done with all before the next begins. The first exception of a body reaches the caller.
 template <class Body>
 void at_once(std::size_t threads, std::size_t count, Body const& body) {
     auto const used = std::max<std::size_t>(1, std::min(threads, count));

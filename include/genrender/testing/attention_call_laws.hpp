@@ -89,8 +89,8 @@ typename Call::features_type attend_to(Call& call, MakeSources const& make_sourc
 /// Checks the laws of attention_call, and of storing_attention_call where the calls are such, on the calls that `phi`
 /// makes at noise level sigma for the frames of the trial. The library cannot look into an engine's features, so every
 /// law is told by estimates that must be equal; a denoiser whose estimates do not depend on its attention passes
-/// whatever its calls do. For denoisers that call their processor back; about 13 calls of all frames. Throws value_error
-/// for a trial of fewer than 2 frames, and what the denoiser throws.
+/// whatever its calls do. For denoisers that call their processor back; about 13 calls of all frames. Throws
+/// value_error for a trial of fewer than 2 frames, and what the denoiser throws.
 template <denoiser Phi>
 law_report check_attention_call_laws(Phi const& phi, typename Phi::real_type sigma, denoiser_trial const& trial = {}) {
     using Real = typename Phi::real_type;

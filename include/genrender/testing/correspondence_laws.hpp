@@ -123,8 +123,8 @@ void check_matches(law_report& report, Map const& map, std::uint32_t i, std::vec
 } // namespace detail
 
 /// Checks the laws of correspondence_map on every frame and token of `map`, and those of weighted_, graded_ and
-/// matched_correspondence_map where it is one. Asks every frame for every point: frames^2 tokens questions, twice. Throws
-/// what the map throws.
+/// matched_correspondence_map where it is one. Asks every frame for every point: frames^2 tokens questions, twice.
+/// Throws what the map throws.
 template <correspondence_map Map>
 correspondence_report check_correspondence_laws(Map const& map) {
     correspondence_report report;

@@ -92,8 +92,8 @@ struct denoiser_trials {
     }
 };
 
-/// Plain attention that counts the runs of each place and compares the frames it is given. A processor for callbacks and
-/// for static graphs.
+/// Plain attention that counts the runs of each place and compares the frames it is given. A processor for callbacks
+/// and for static graphs.
 struct counting_attention {
     std::map<attention_place, std::size_t>* runs;
     std::span<frame_index const> frames;
@@ -142,8 +142,8 @@ inline std::string place_text(attention_place place) {
     return "site " + std::to_string(place.site.value) + " of branch " + std::to_string(place.branch);
 }
 
-/// Notes places that were run not once, or frames that were not those of the call. Places after the `last` site of their
-/// branch may be left out.
+/// Notes places that were run not once, or frames that were not those of the call. Places after the `last` site of
+/// their branch may be left out.
 template <denoiser Phi, class Run>
 void require_runs(law_report& report, std::string const& concept_name, denoiser_trials<Phi> const& trials,
                   std::span<std::optional<site_index> const> last, Run const& run) {

@@ -19,8 +19,8 @@
 
 namespace genrender::testing {
 
-/// The laws that a model breaks, all of them at once, a sentence each: `concept: law: found ..., expected ...`. Of a law
-/// that is broken in many places, the first place. Empty when all laws that were checked hold.
+/// The laws that a model breaks, all of them at once, a sentence each: `concept: law: found ..., expected ...`. Of a
+/// law that is broken in many places, the first place. Empty when all laws that were checked hold.
 struct law_report {
     std::vector<std::string> violations;
 
