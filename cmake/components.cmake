@@ -121,11 +121,13 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     keyframes/recorder.hpp
     keyframes/stoppable_denoiser.hpp
     blending/blend_plan.hpp
+    blending/blend_plans.hpp
     blending/mix_rows.hpp
     blending/mix_rows.inl
     blending/texel_weights.hpp
     injection/feature_io.hpp
     injection/host_attention_call.hpp
+    injection/injection_settings.hpp
     injection/injector.hpp
     injection/post_attention.hpp
     injection/pre_attention.hpp

@@ -102,15 +102,14 @@ int main() try {
     render_settings<float> settings;
     settings.steps = 2;
     settings.keyframes.count = 2;
-    render_report by_rest_pose;
-    render_report by_footprints;
     auto const make_map = [&](grid_extents grid) { return rest_pose_map{ball, grid}; };
-    render(network, UV, make_map, settings, by_rest_pose);
-    render(network, UV, settings, by_footprints);
+    auto const by_rest_pose =
+        render<generative_rendering, rest_pose_map>(network, UV, {.settings = settings, .make_map = make_map});
+    auto const by_footprints = render(network, UV, {.settings = settings});
 
     std::printf("Tokens of the ball that some keyframe shows, too:\n  feature map   rest pose   footprints\n");
-    for (auto const& [grid, count] : by_rest_pose.coverage()) {
-        auto const footprints = by_footprints.coverage().at(grid);
+    for (auto const& [grid, count] : by_rest_pose.report.coverage) {
+        auto const footprints = by_footprints.report.coverage.at(grid);
         std::printf("  %3zu x %-3zu    %8.1f %%   %8.1f %%\n", grid.height, grid.width, 100 * count.share(),
                     100 * footprints.share());
         require_value(count.share() > 0.8, "your_own_correspondence", "coverage", count.share(), "above 0.8");

@@ -100,10 +100,9 @@ int main() try {
     render_settings<float> settings;
     settings.steps = 4;
     settings.keyframes.count = 3;
-    render_report report;
-    auto const called = render(calling_denoiser{}, UV, settings, report);
-    auto const graphed = render(graph_denoiser{}, UV, settings, report);
-    auto const alone = render(calling_denoiser{}, UV, per_frame(settings, noise_kind::uv), report);
+    auto const called = render(calling_denoiser{}, UV, {.settings = settings}).z;
+    auto const graphed = render(graph_denoiser{}, UV, {.settings = settings}).z;
+    auto const alone = render(calling_denoiser{}, UV, {.settings = per_frame(settings, noise_kind::uv)}).z;
 
     float difference = 0;
     float effect = 0;

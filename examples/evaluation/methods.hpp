@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -44,8 +45,7 @@ std::vector<compared_method<Network>> compared_methods() {
     using settings_type = render_settings<float>;
     std::vector<compared_method<Network>> methods;
     auto const run = [](auto const& method, Network const& phi, uv_maps_view const& UV, settings_type const& settings) {
-        render_report report;
-        return render(method, phi, UV, settings, report);
+        return render<std::remove_cvref_t<decltype(method)>>(phi, UV, {.settings = settings, .method = method}).z;
     };
     auto const add_frame_by_frame = [&](std::string group, noise_kind noise) {
         methods.push_back({"Per-Frame", noise_name(noise), std::move(group),
@@ -83,15 +83,15 @@ std::vector<compared_method<Network>> compared_methods() {
     add_baseline("TokenFlow*", "noise", noise_kind::uv, tokenflow{});
 
     add_ours("No pre-attention", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.pre_attention = false; });
+             [](settings_type& settings) { settings.injection.pre_attention = false; });
     add_ours("No post-attention", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.post_attention = false; });
+             [](settings_type& settings) { settings.injection.post_attention = false; });
     add_ours("Ours", "ablation", noise_kind::fixed, as_it_is);
     add_ours("Ours", "ablation", noise_kind::independent, as_it_is);
     add_ours("No AdaIN", "ablation", noise_kind::uv,
              [](settings_type& settings) { settings.normalization.enabled = false; });
-    add_ours("AdaIN of means alone", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.normalization.statistics = adain_statistics::mean; });
+    add_ours("AdaIN with deviations", "ablation", noise_kind::uv,
+             [](settings_type& settings) { settings.normalization.statistics = adain_statistics::mean_and_deviation; });
 
     auto const add_variant = [&](std::string name, std::string noise, auto change) {
         add_ours(std::move(name), "correspondence", noise_kind::uv, change);

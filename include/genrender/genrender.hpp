@@ -93,11 +93,13 @@
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 
 #include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/blend_plans.hpp>
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/injection/host_attention_call.hpp>
+#include <genrender/injection/injection_settings.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/injection/post_attention.hpp>
 #include <genrender/injection/pre_attention.hpp>

@@ -64,8 +64,7 @@ TEST_SUITE("pipeline/sequence_method") {
         settings.steps = 3;
         auto const z = testing::check_sequence_method_laws(middle_first{}, phi, maps, settings);
         settings.window_end = 0;
-        render_report report;
-        auto const alone = render(phi, to_uv_view(maps), settings, report);
+        auto const alone = render(phi, to_uv_view(maps), {.settings = settings}).z;
         CHECK(std::equal(z.begin(), z.end(), alone.begin()));
     }
 }

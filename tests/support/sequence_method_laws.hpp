@@ -25,17 +25,18 @@ latents<typename Phi::real_type> check_sequence_method_laws(Method const& method
     std::map<std::size_t, std::size_t> frames;
     std::size_t before = 0;
     progress last;
-    render_report report;
-    auto const z = render(method, phi, to_uv_view(maps), settings, report, [&](progress const& now) {
+    auto const observe = [&](progress const& now) {
         auto const is_same_pass = last.step == now.step && last.pass == now.pass && now.frames_done > before;
         auto& count = now.pass == render_pass::keyframes ? keyframes[now.step] : frames[now.step];
         count += now.frames_done - (is_same_pass ? before : 0);
         before = now.frames_done;
         last = now;
         return true;
-    });
+    };
+    auto const [z, report, is_cancelled] =
+        render<Method>(phi, to_uv_view(maps), {.settings = settings, .method = method, .observer = observe});
     for (std::size_t step = 0; step < settings.steps; ++step) {
-        auto const evaluations = settings.sampler == sampler_kind::heun && step > 0 ? 2U : 1U;
+        auto const evaluations = evaluations_at(settings.sampler, step);
         REQUIRE(frames[step] == evaluations * N);
         REQUIRE(keyframes[step] == evaluations * method.keyframes(settings, N, step).size());
     }
@@ -44,12 +45,12 @@ latents<typename Phi::real_type> check_sequence_method_laws(Method const& method
     // Estimates depend neither on the loop nor on how many frames are denoised at once.
     for (auto const frames_per_call : {std::size_t{1}, std::size_t{2}, N, std::numeric_limits<std::size_t>::max()}) {
         settings.frames_per_call = frames_per_call;
-        render_report again;
-        auto const same = render(method, phi, to_uv_view(maps), settings, again, {}, threaded_loop(2));
-        REQUIRE(std::equal(z.begin(), z.end(), same.begin()));
-        REQUIRE(again.coverage().size() == report.coverage().size());
-        for (auto const& [grid, count] : report.coverage()) {
-            REQUIRE(again.coverage().at(grid).covered == count.covered);
+        auto const again =
+            render<Method>(phi, to_uv_view(maps), {.settings = settings, .method = method, .loop = threaded_loop(2)});
+        REQUIRE(std::equal(z.begin(), z.end(), again.z.begin()));
+        REQUIRE(again.report.coverage.size() == report.coverage.size());
+        for (auto const& [grid, count] : report.coverage) {
+            REQUIRE(again.report.coverage.at(grid).covered == count.covered);
         }
     }
     return z;

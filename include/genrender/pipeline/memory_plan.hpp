@@ -99,15 +99,15 @@ inline std::size_t texel_bytes(run_description const& run, grid_extents grid) {
            grown_capacity(grid.size()) * entry * run.frames;
 }
 
-/// Stacks of the latents' size that live while D is evaluated; updates between evaluations add none.
+/// Stacks of the latents' size that live while D is evaluated, that of the result included; updates between evaluations add none.
 inline std::size_t latent_stacks(sampler_kind sampler) {
     switch (sampler) {
     case sampler_kind::heun:
-        return 4;
+        return 5;
     case sampler_kind::dpmpp_2m:
-        return 3;
+        return 4;
     default:
-        return 2;
+        return 3;
     }
 }
 
@@ -129,7 +129,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     std::size_t m = 0;
     std::set<frame_index> ever_keyframes;
     for (std::size_t step = 0; step < settings.steps; ++step) {
-        auto const of_step = settings.sampler == sampler_kind::heun && step > 0 ? std::size_t{2} : std::size_t{1};
+        auto const of_step = evaluations_at(settings.sampler, step);
         auto const drawn = method.keyframes(settings, run.frames, step);
         evaluations += of_step;
         with_keyframes += drawn.empty() ? 0 : of_step;
@@ -156,21 +156,21 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
             work.plain_attention_flops += plain_evaluations * frames * own;
             work.projection_flops += static_cast<double>(work.denoised_frames) * 6 * N * C * C;
             auto const takes_part = m > 0 && settings.layers(site, branch);
-            auto const blocks = takes_part && settings.pre_attention ? keyframes : 0;
-            auto const left_out = settings.keeps_own_copy ? 0 : blocks; // a block for each keyframe
-            work.attention_flops += plain_evaluations * frames * own +  // every frame to itself
+            auto const blocks = takes_part && settings.injection.pre_attention ? keyframes : 0;
+            auto const left_out = settings.injection.keeps_own_copy ? 0 : blocks; // a block for each keyframe
+            work.attention_flops += plain_evaluations * frames * own +            // every frame to itself
                                     injected_evaluations * (frames * blocks - left_out) * own +     // and to keyframes
                                     injected_evaluations * keyframes * std::max(1.0, blocks) * own; // among themselves
             if (!takes_part) {
                 continue;
             }
             largest_recorded = std::max(largest_recorded, elements);
-            bytes.bank += 3 * m * elements * feature_bytes<Real>(settings.feature_storage);
-            if (settings.post_attention) {
+            bytes.bank += 3 * m * elements * feature_bytes<Real>(settings.keyframe_storage);
+            if (settings.injection.post_attention) {
                 grids.insert(site.grid);
                 work.mixed_bytes +=
                     injected_evaluations * frames * N * C *
-                    static_cast<double>(2 * sizeof(Real) + m * feature_bytes<Real>(settings.feature_storage));
+                    static_cast<double>(2 * sizeof(Real) + m * feature_bytes<Real>(settings.keyframe_storage));
             }
         }
     }
