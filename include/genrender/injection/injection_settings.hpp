@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 5, 6] What of the keyframes is injected into the other frames.
+// [GR sec. 4: Ablation studies] What of the keyframes is injected into the other frames.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
