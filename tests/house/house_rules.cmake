@@ -324,6 +324,27 @@ if(blocks GREATER regions)
     violation("README.md: ${blocks} blocks of C++, of which ${regions} are regions of an example")
 endif()
 
+# -- the version of version.hpp is that of every file that has to say one ------------------------------------------------
+if(EXISTS ${ROOT}/include/genrender/version.hpp)
+    file(READ ${ROOT}/include/genrender/version.hpp text)
+    string(REGEX MATCH "VERSION_STRING \"([0-9.]+)\"" matched "${text}")
+    string(REPLACE "." "\\." version "${CMAKE_MATCH_1}")
+    set(places
+        CHANGELOG.md "\n## ${version}[, \n]"
+        CITATION.cff "\nversion: ${version}\n"
+        packaging/vcpkg/genrender/vcpkg.json "\"version-semver\": \"${version}\"")
+    while(places)
+        list(POP_FRONT places file expression)
+        set(text "")
+        if(EXISTS ${ROOT}/${file})
+            file(READ ${ROOT}/${file} text)
+        endif()
+        if(NOT text MATCHES "${expression}")
+            violation("${file}: does not tell the version of include/genrender/version.hpp")
+        endif()
+    endwhile()
+endif()
+
 if(violations GREATER 0)
     message(FATAL_ERROR "${violations} rules of the house are broken")
 endif()

@@ -6,13 +6,8 @@ cmake_minimum_required(VERSION 3.25)
 cmake_path(SET root NORMALIZE ${CMAKE_CURRENT_LIST_DIR}/../..)
 set(port_folder ${root}/packaging/vcpkg/genrender)
 
-# What the port says of itself is true of the library.
+# The port names the packages that the components need.
 file(READ ${port_folder}/vcpkg.json manifest)
-string(JSON version GET "${manifest}" version-semver)
-file(STRINGS ${root}/include/genrender/version.hpp line REGEX "^#define GENRENDER_VERSION_STRING \"${version}\"")
-if(NOT line)
-    message(FATAL_ERROR "vcpkg.json: the version is ${version}, which is not that of version.hpp")
-endif()
 set(names_Eigen3 eigen3)
 set(names_nlohmann_json nlohmann-json)
 include(${root}/cmake/components.cmake)

@@ -61,12 +61,12 @@ enum class adain_statistics : std::uint8_t {
 /// How latents are normalised.
 template <class Real>
 struct adain_settings {
-    bool enabled = true;                                                ///< whether latents are normalised at all
-    adain_statistics statistics = adain_statistics::mean_and_deviation; ///< what is made alike
-    Real window_begin = 0;        ///< first share of the steps in which it runs, in [0, 1]
-    Real window_end = 1;          ///< share of the steps before which it ends
+    bool enabled = true;
+    adain_statistics statistics = adain_statistics::mean_and_deviation;
+    Real window_begin = 0;        ///< first and
+    Real window_end = 1;          ///< last share of the steps in which it runs, [begin, end)
     std::size_t least_pixels = 2; ///< background pixels below which `fallback` decides; at least 2
-    without_background fallback = without_background::skip; ///< what becomes of a frame with fewer background pixels
+    without_background fallback = without_background::skip;
     bool on_noisy_latents = false; ///< normalise z_{t-1} after the sampler's step instead of the clean estimates
 };
 
