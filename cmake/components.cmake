@@ -14,7 +14,7 @@ endmacro()
 # genrender_component(NAME [PACKAGES packages] HEADERS headers)
 #   The core is genrender::genrender and has its rooms in the order in which the data flows. Every other component is
 #   genrender::NAME, lies in the room of its name, and links its packages and the core. Headers lie in include/genrender,
-#   the umbrella first, and version.hpp beside it; a file *.inl is a part of the headers that include it.
+#   the umbrella first; a file *.inl is a part of the headers that include it.
 macro(genrender_component name)
     list(APPEND genrender_components ${name})
     cmake_parse_arguments(genrender_${name} "" "" "PACKAGES;HEADERS" ${ARGN})
