@@ -65,7 +65,7 @@ public:
         source_ = source;
     }
 
-    /// Number of frames.
+    /// Frames of the maps.
     std::size_t frame_count() const { return source_->frame_count(); }
     /// Height and width of the feature map.
     grid_extents grid() const { return grid_; }
