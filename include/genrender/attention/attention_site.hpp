@@ -20,7 +20,11 @@ enum class network_kind : std::uint8_t {
 };
 
 /// Which part of the network holds it.
-enum class network_part : std::uint8_t { encoder, middle, decoder };
+enum class network_part : std::uint8_t {
+    encoder, ///< on the way to the coarsest grid
+    middle,  ///< at the coarsest grid
+    decoder  ///< on the way back
+};
 
 /// One self-attention module of a denoiser, described once for all calls.
 struct attention_site {

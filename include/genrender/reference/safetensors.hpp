@@ -248,7 +248,10 @@ struct safetensors_source {
 };
 
 /// How a tensor's elements are stored.
-enum class safetensors_storage { f32, f16 };
+enum class safetensors_storage {
+    f32, ///< as they are
+    f16  ///< rounded to the nearest of IEEE binary16
+};
 
 /// Writes the tensors in the order of their names, data aligned to 8 bytes. Throws shape_error if values do not fill
 /// their shape, file_error if the file cannot be written.

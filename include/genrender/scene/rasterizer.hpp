@@ -29,7 +29,10 @@ struct rendered_guidance {
 };
 
 /// Whether the rasteriser also writes rest positions.
-enum class position_pass : std::uint8_t { off, on };
+enum class position_pass : std::uint8_t {
+    off, ///< UV and depth maps alone
+    on   ///< rest positions too
+};
 
 /// The rest positions of `guidance` as canonical maps. Throws shape_error if they were not written.
 inline position_maps_view to_position_view(rendered_guidance const& guidance) {
