@@ -17,10 +17,10 @@ namespace genrender::reference {
 
 /// Bands of the transform.
 enum class haar_band : std::size_t {
-    mean,       ///< of a square of 2 x 2 pixels, times 2
-    left_right, ///< its left pixels less its right ones
-    top_bottom, ///< its upper pixels less its lower ones
-    diagonal    ///< its upper left and lower right pixels less the other two
+    mean,       ///< half the sum of a square of 2 x 2 pixels
+    left_right, ///< half of its left pixels less its right ones
+    top_bottom, ///< half of its upper pixels less its lower ones
+    diagonal    ///< half of its upper left and lower right pixels less the other two
 };
 
 namespace internal {
