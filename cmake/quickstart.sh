@@ -20,6 +20,7 @@ sh cmake/quickstart.sh WHAT
             NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
             earlier run, with --no-peers without the programs of others (benchmarks/README.md)
+  tables    write the tables that evaluate and bench have left in build/ into the pages of docs/ that show them
   packages  install the Debian packages that all of these need, and do no more
 
 Packages that are missing are installed with apt-get; nothing is downloaded when all are there.
@@ -197,6 +198,7 @@ case ${1-} in
         shift
         bench "$@"
         ;;
+    tables) cmake -P cmake/write_tables.cmake ;;
     packages) # shellcheck disable=SC2086 # a list of words
         install_packages $slow_check_packages $evaluate_packages ;;
     *)

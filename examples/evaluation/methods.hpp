@@ -66,6 +66,8 @@ std::vector<compared_method<Network>> compared_methods() {
         methods.push_back({std::move(name), noise_name(noise), std::move(group),
                            [run, noise, change](Network const& phi, uv_maps_view const& UV, settings_type settings) {
                                settings.noise.kind = noise;
+                               // The paper's, which is not the default.
+                               settings.normalization.statistics = adain_statistics::mean_and_deviation;
                                change(settings);
                                return run(generative_rendering{}, phi, UV, settings);
                            }});

@@ -174,11 +174,12 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     bool no_pre = false;
     bool no_post = false;
     bool no_adain = false;
-    bool adain_means = false;
+    bool adain_deviations = false;
     ours->add_flag("--no-pre", no_pre, "no pre-attention injection (eq. 3 and 5)");
     ours->add_flag("--no-post", no_post, "no post-attention injection (eq. 6)");
     auto* const without = ours->add_flag("--no-adain", no_adain, "no latent normalisation");
-    ours->add_flag("--adain-means", adain_means, "latent normalisation of means alone, not of deviations")
+    ours->add_flag("--adain-deviations", adain_deviations,
+                   "latent normalisation of means and deviations, the paper's; of means alone without it")
         ->excludes(without);
 
     std::string storage = "same";
@@ -253,7 +254,8 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     settings.pre_attention = !no_pre;
     settings.post_attention = !no_post;
     settings.normalization.enabled = !no_adain;
-    settings.normalization.statistics = adain_means ? adain_statistics::mean : adain_statistics::mean_and_deviation;
+    settings.normalization.statistics =
+        adain_deviations ? adain_statistics::mean_and_deviation : adain_statistics::mean;
     settings.feature_storage = storage == "float16"    ? feature_storage::f16
                                : storage == "bfloat16" ? feature_storage::bf16
                                                        : feature_storage::same;

@@ -215,3 +215,10 @@ foreach(option IN LISTS documented)
         violation("docs/program.md: has a row for ${option}, which the program does not know")
     endif()
 endforeach()
+
+# -- marks of tables that programs make ---------------------------------------------------------------------------------------
+execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${ROOT} -D CHECK=ON -P ${CMAKE_CURRENT_LIST_DIR}/../../cmake/write_tables.cmake
+    RESULT_VARIABLE code ERROR_VARIABLE said OUTPUT_QUIET)
+if(NOT code EQUAL 0)
+    violation("${said}")
+endif()

@@ -66,7 +66,8 @@ genrender_test_room(scene mesh)\ngenrender_test_room(blending\n    thing)\n")
     // docs:begin story\n    auto a = b[0];\n    // docs:end\n}\n")
     file(WRITE ${COPY}/examples/support/render_options.hpp "// SPDX-License-Identifier: MIT\n// Options.\n\
 add(\"--speed\");\n")
-    file(WRITE ${COPY}/docs/README.md "# Pages\n\n- [The program](program.md)\n- [Moving](moving_from_0_1_to_0_2.md#new)\n")
+    file(WRITE ${COPY}/docs/README.md "# Pages\n\n- [The program](program.md)\n- [Moving](moving_from_0_1_to_0_2.md#new)\n\n\
+<!-- table build/t.md -->\n| a |\n|---|\n| 1; [2 |\n")
     file(WRITE ${COPY}/docs/program.md "# Program\n\n## The `options`, all\n\n| option |\n|---|\n| `--speed N` |\n\n\
 ```cpp\nauto a = b[0];\n```\n\nSee [above](#program), `[no](link)`, [a folder](../examples) and [far](https://example.org).\n\n\
 ```sh\n# No heading, [no](link)\n```\n")
@@ -196,3 +197,6 @@ file(REMOVE ${COPY}/docs/README.md)
 verdict("a house without docs/README.md" "docs/README.md: is missing")
 mutate(examples/support/render_options.hpp "" "add(\"--colour\");\n" "docs/program.md: has no row for --colour")
 mutate(docs/program.md "--speed N" "--haste N" "docs/program.md: has a row for --haste, which the program does not know")
+mutate(docs/README.md "| a |\n|---|\n| 1; [2 |\n" "" "docs/README.md: below the mark of build/t.md stands no table")
+mutate(docs/README.md "| 1; [2 |" "| 1 |\nwords" "docs/README.md: below the mark of build/t.md stands no table")
+mutate(docs/README.md "build/t.md" "t.md" "docs/README.md: t.md is no file of a build")
