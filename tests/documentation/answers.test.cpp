@@ -132,6 +132,14 @@ TEST_SUITE("documentation/answers") {
         CHECK(settings.noise.T == 512);
     }
 
+    TEST_CASE("latent normalisation as in 0.1 is a setting") {
+        auto settings = small_settings();
+        // docs:begin as_in_zero_one
+        settings.normalization.statistics = genrender::adain_statistics::mean_and_deviation;
+        // docs:end
+        CHECK(settings.normalization.enabled);
+    }
+
     TEST_CASE("maps are looked at and memory is planned before a run") {
         analytic_denoiser<float> const phi{{4, 4}};
         auto const UV = to_uv_view(strip);
