@@ -10,6 +10,7 @@ sh cmake/quickstart.sh WHAT
   demo      render an animation with the built-in network, and the same frame by frame   (build/demo_output)
   evaluate  the paper's tables on the built-in network: every method, baseline and ablation (build/evaluation);
             with --quick one prompt and one seed, with other options those of the program evaluate
+  tables    write the tables that evaluate and bench have left in build/ into the pages of docs/ that show them
   test      every test but those that are slow by nature: with g++, with clang++ and AddressSanitizer, and those that
             start threads with ThreadSanitizer
   slow_checks
@@ -20,7 +21,6 @@ sh cmake/quickstart.sh WHAT
             NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
             earlier run, with --no-peers without the programs of others (benchmarks/README.md)
-  tables    write the tables that evaluate and bench have left in build/ into the pages of docs/ that show them
   packages  install the Debian packages that all of these need, and do no more
 
 Packages that are missing are installed with apt-get; nothing is downloaded when all are there.
@@ -192,13 +192,13 @@ case ${1-} in
         shift
         evaluate "$@"
         ;;
+    tables) cmake -P cmake/write_tables.cmake ;;
     test) run_tests ;;
     slow_checks) slow_checks ;;
     bench)
         shift
         bench "$@"
         ;;
-    tables) cmake -P cmake/write_tables.cmake ;;
     packages) # shellcheck disable=SC2086 # a list of words
         install_packages $slow_check_packages $evaluate_packages ;;
     *)
