@@ -7,6 +7,8 @@
 #error "genrender is C++20: compile with -std=c++20 or later"
 #endif
 
+#include <genrender/version.hpp>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/half_precision.hpp>

@@ -77,7 +77,11 @@ foreach(header IN LISTS headers)
         violation("${header}: ${lines} lines, at most ${most_lines}")
     endif()
 
-    string(REGEX MATCH "^[^/]+" room "${header}")
+    # What lies beside the rooms and is no umbrella is of the first room.
+    set(room core)
+    if(NOT header STREQUAL "version.hpp")
+        string(REGEX MATCH "^[^/]+" room "${header}")
+    endif()
     list(FIND rooms ${room} rank)
     if(rank EQUAL -1)
         violation("${header}: '${room}' is no room of the house")
@@ -91,7 +95,7 @@ foreach(header IN LISTS headers)
     list(APPEND includes_of_${component} ${includes})
     list(APPEND all_includes ${includes})
     foreach(include IN LISTS includes)
-        if(include MATCHES "<genrender/([a-z_]+\\.hpp)>")
+        if(include MATCHES "<genrender/([a-z_]+\\.hpp)>" AND NOT CMAKE_MATCH_1 STREQUAL "version.hpp")
             violation("${header}: includes the umbrella ${CMAKE_MATCH_1}")
         elseif(include MATCHES "<genrender/([a-z_]+)/")
             set(included_room ${CMAKE_MATCH_1})
@@ -288,6 +292,27 @@ endforeach()
 
 # -- README.md and docs/ ---------------------------------------------------------------------------------------------------
 include(${CMAKE_CURRENT_LIST_DIR}/documentation_rules.cmake)
+
+# -- the version of version.hpp is that of every file that has to say one ------------------------------------------------
+if(EXISTS ${ROOT}/include/genrender/version.hpp)
+    file(READ ${ROOT}/include/genrender/version.hpp text)
+    string(REGEX MATCH "VERSION_STRING \"([0-9.]+)\"" matched "${text}")
+    string(REPLACE "." "\\." version "${CMAKE_MATCH_1}")
+    set(places
+        CHANGELOG.md "\n## ${version}[, \n]"
+        CITATION.cff "\nversion: ${version}\n"
+        packaging/vcpkg/genrender/vcpkg.json "\"version-semver\": \"${version}\"")
+    while(places)
+        list(POP_FRONT places file expression)
+        set(text "")
+        if(EXISTS ${ROOT}/${file})
+            file(READ ${ROOT}/${file} text)
+        endif()
+        if(NOT text MATCHES "${expression}")
+            violation("${file}: does not tell the version of include/genrender/version.hpp")
+        endif()
+    endwhile()
+endif()
 
 if(violations GREATER 0)
     message(FATAL_ERROR "${violations} rules of the house are broken")

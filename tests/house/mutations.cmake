@@ -145,6 +145,12 @@ mutate(include/genrender/genrender.hpp "" "#include <genrender/reference/network
 mutate(include/genrender/scene.hpp "" "#include <genrender/core/index.hpp>\n" "index.hpp>, which is not of scene")
 mutate(include/genrender/reference.hpp "network" "other" "reference.hpp: lacks .*reference/network.hpp")
 mutate(include/genrender/other.hpp "" "${file_head}" "'other.hpp' is no room")
+mutate(include/genrender/version.hpp "" "${file_head}" "version.hpp: has no tests/core/version.test.cpp")
+foreach(file IN ITEMS CHANGELOG.md CITATION.cff packaging/vcpkg/genrender/vcpkg.json)
+    mutate(include/genrender/version.hpp "" "${file_head}#define GENRENDER_VERSION_STRING \"9.8.7\"\n"
+        "${file}: does not tell the version")
+endforeach()
+mutate(include/genrender/version.hpp "" "${file_head}" "version.hpp: is not among the headers of core")
 mutate(${thing} "" "#include <text/text.hpp>\n" "core: .*<text/text.hpp>, of a package that it does not declare")
 mutate(${thing} "" "#  include <slow.h>\n" "core: .*<slow.h>, of a package that it does not declare")
 mutate(include/genrender/scene/mesh.inl "" "#include <text/text.hpp>\n" "scene: .*<text/text.hpp>, of a package that it does not")

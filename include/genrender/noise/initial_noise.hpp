@@ -36,15 +36,15 @@ enum class noise_reading : std::uint8_t {
 
 /// How initial noise is made.
 struct noise_settings {
-    noise_kind kind = noise_kind::uv;
-    background_noise background = background_noise::fixed;
+    noise_kind kind = noise_kind::uv;                      ///< which noise the frames start from
+    background_noise background = background_noise::fixed; ///< which noise pixels without an object get
     /// T, texels along each side of an object's noise texture under the readings of texels: a low T repeats
     /// values in neighbouring pixels, a high T gives each frame noise of its own. 0 matches each object's T to its
     /// density in the maps, one texel a latent pixel.
     std::size_t T = 0;
-    std::uint64_t seed = 0;
-    noise_reading reading = noise_reading::surface;
-    environment_rays rays = {}; ///< what background_noise::environment needs
+    std::uint64_t seed = 0;                         ///< two runs of one seed have the same noise
+    noise_reading reading = noise_reading::surface; ///< how a latent pixel reads the noise of a surface
+    environment_rays rays = {};                     ///< what background_noise::environment needs
 };
 
 namespace detail {

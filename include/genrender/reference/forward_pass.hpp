@@ -27,8 +27,10 @@ namespace genrender::reference {
 template <class Real>
 class any_processor {
 public:
+    /// What the network's modules hand to a processor.
     using call_type = host_attention_call<Real, attention_matrices<Real>>;
 
+    /// Refers to any attention processor, which has to outlive this.
     template <class Processor>
         requires(!std::is_same_v<std::remove_const_t<Processor>, any_processor>)
     any_processor(Processor& processor)
@@ -42,7 +44,9 @@ public:
                       "reference_network: the processor does not model attention_processor");
     }
 
+    /// Runs the processor.
     host_features<Real> operator()(call_type& call) const { return run_(processor_, call); }
+    /// What genrender::is_plain_at tells of the processor.
     bool is_plain_at(attention_place place) const { return is_plain_at_(processor_, place); }
 
 private:

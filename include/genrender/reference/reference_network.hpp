@@ -41,9 +41,9 @@ namespace genrender::reference {
 template <std::floating_point Real>
 class reference_network {
 public:
-    using real_type = Real;
-    using features_type = host_features<Real>;
-    using residuals_type = encoded_frames<Real>;
+    using real_type = Real;                      ///< float or double, in which it computes
+    using features_type = host_features<Real>;   ///< features in host memory
+    using residuals_type = encoded_frames<Real>; ///< what the encoder leaves to the decoder
 
     /// Takes the weights of both networks (those of Stable Diffusion 1.5 and its ControlNet in diffusers' layout fit,
     /// as do weights<Real>::seeded). Throws value_error if the config cannot be built, the latents' grid cannot be
@@ -91,9 +91,13 @@ public:
         return {source, source.conditioning(inverse_depth, prompt, guidance_scale), std::move(loop)};
     }
 
+    /// The architecture that its weights are for.
     unet_config const& config() const { return config_; }
+    /// Channels of a latent.
     std::size_t latent_channels() const { return config_.in_channels; }
+    /// Height and width of a latent.
     grid_extents latent_grid() const { return latent_grid_; }
+    /// Its self-attention modules, in the order in which they run.
     std::span<attention_site const> sites() const { return sites_; }
     /// 1 with a guidance scale of 1, else 2: the empty prompt, then the prompt.
     std::size_t branches() const { return conditioning_.guidance_scale == 1 ? 1 : 2; }

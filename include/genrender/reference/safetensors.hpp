@@ -93,6 +93,7 @@ public:
         check_layout(file_bytes - data_begin_);
     }
 
+    /// Path of the file that it was read from.
     std::string const& path() const { return path_; }
     /// All tensors by name, those of types that cannot be read included.
     std::map<std::string, safetensors_entry> const& entries() const { return entries_; }
@@ -242,8 +243,8 @@ private:
 
 /// A tensor to be written: row-major elements of the given shape.
 struct safetensors_source {
-    std::vector<std::size_t> shape;
-    std::span<float const> values;
+    std::vector<std::size_t> shape; ///< extents of its axes
+    std::span<float const> values;  ///< its elements; not owned
 };
 
 /// How a tensor's elements are stored.

@@ -21,8 +21,8 @@ namespace genrender {
 
 /// What a scene gives to the generator: where every pixel lies on its object's texture, and how far away it is.
 struct rendered_guidance {
-    uv_maps uv;
-    depth_maps depth;
+    uv_maps uv;       ///< texture coordinates, object and coverage of every pixel
+    depth_maps depth; ///< distance and coverage of every pixel
     /// Where every pixel lies on its object at rest, in the mesh's units [frames, height, width, 3]; without frames
     /// unless position_pass::on.
     tensor<float, 4> position = tensor<float, 4>::from_shape({0, 0, 0, 3});
