@@ -10,6 +10,7 @@ sh cmake/quickstart.sh WHAT
   demo      render an animation with the built-in network, and the same frame by frame   (build/demo_output)
   evaluate  the paper's tables on the built-in network: every method, baseline and ablation (build/evaluation);
             with --quick one prompt and one seed, with other options those of the program evaluate
+  tables    write the tables that evaluate and bench have left in build/ into the pages of docs/ that show them
   test      every test but those that are slow by nature: with g++, with clang++ and AddressSanitizer, and those that
             start threads with ThreadSanitizer
   slow_checks
@@ -200,6 +201,7 @@ case ${1-} in
         shift
         evaluate "$@"
         ;;
+    tables) cmake -P cmake/write_tables.cmake ;;
     test) run_tests ;;
     slow_checks) slow_checks ;;
     bench)

@@ -7,7 +7,7 @@
 
 #include <exception>
 
-// readme:begin first_render
+// docs:begin first_render
 #include <genrender/genrender.hpp>
 
 #include <iostream>
@@ -31,7 +31,7 @@ genrender::latents<float> stylise(Phi const& your_network, genrender::uv_maps co
     }
     return std::move(result.z);
 }
-// readme:end
+// docs:end
 
 int main() {
     try {

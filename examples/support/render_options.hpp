@@ -172,7 +172,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     ours->add_flag("--no-post", no_post, "no post-attention injection (eq. 6)");
     auto* const without = ours->add_flag("--no-adain", no_adain, "no latent normalisation");
     ours->add_flag("--adain-deviations", adain_deviations,
-                   "latent normalisation of deviations too, as the paper has it, not of means alone")
+                   "latent normalisation of means and deviations, the paper's; of means alone without it")
         ->excludes(without);
 
     std::string storage = "same";
