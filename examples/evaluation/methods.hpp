@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -101,11 +102,11 @@ std::vector<compared_method<Network>> compared_methods() {
     };
     auto const by_texels = [](settings_type& settings, std::size_t T) {
         settings.correspondence.kind = correspondence_kind::texel_grid;
-        settings.correspondence.texels.T = T;
+        settings.correspondence.texels.T = T > 0 ? std::optional(T) : std::nullopt;
     };
     auto const read_noise = [](settings_type& settings, noise_reading reading, std::size_t T) {
         settings.noise.reading = reading;
-        settings.noise.T = T;
+        settings.noise.T = T > 0 ? std::optional(T) : std::nullopt;
     };
     for (std::size_t const T : {64U, 256U, 1024U, 4096U}) {
         add_variant("Texels " + std::to_string(T), "UV",

@@ -78,7 +78,7 @@ planned_and_measured compare(std::size_t frames, render_settings<float> const& s
     wide_denoiser const phi;
     auto run = describe_run(phi, to_uv_view(maps));
     run.network_bytes = bytes_of_a_call(phi, 2) - bytes_of_a_call(phi, 1);
-    run.call_bytes = bytes_of_a_call(phi, 1) - run.network_bytes;
+    run.call_bytes = bytes_of_a_call(phi, 1) - *run.network_bytes;
     return {plan_memory(run, settings),
             counted_memory::peak_of([&] { render(phi, to_uv_view(maps), {.settings = settings}); })};
 }

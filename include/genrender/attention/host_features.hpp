@@ -75,7 +75,11 @@ public:
         return visit([](auto const& view) -> std::array<std::size_t, 3> const& { return view.extents(); });
     }
     /// The format that the elements are kept in.
-    feature_storage storage() const { return static_cast<feature_storage>(view_.index()); }
+    feature_storage storage() const {
+        return std::holds_alternative<strided_view<Real, 3>>(view_)      ? feature_storage::same
+               : std::holds_alternative<strided_view<float16, 3>>(view_) ? feature_storage::f16
+                                                                         : feature_storage::bf16;
+    }
     /// Whether the memory is an engine's, which must outlive the handle.
     bool is_borrowed() const { return owner_ == nullptr; }
 

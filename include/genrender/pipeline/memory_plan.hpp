@@ -187,11 +187,11 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     }
 
     // What does not: the keyframes' features and the calls under way.
-    auto const of_frame = std::max(run.network_bytes, 5 * largest_site * sizeof(Real)); // f, Q, K, V, F
+    auto const of_frame = std::max(run.network_bytes.value_or(0), 5 * largest_site * sizeof(Real)); // f, Q, K, V, F
     auto const calls = std::min(std::max<std::size_t>(run.calls_at_once, 1), run.frames);
     auto const at_once = std::min(calls * std::min(settings.frames_per_call, run.frames), run.frames);
     bytes.keyframe_latents = 2 * m * latent_bytes;
-    bytes.residuals = settings.reuses_keyframes ? m * run.residual_bytes : 0;
+    bytes.residuals = settings.reuses_keyframes ? m * run.residual_bytes.value_or(0) : 0;
     std::size_t making = 0;
     for (auto const& grid : grids) {
         if (!by_texels) {
@@ -207,8 +207,8 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     // Recorded features of the site that is running are counted in the bank. If they are copies of 16 bits, these are
     // made after attention, when a call holds less by about as much.
     auto const counted_twice = 3 * m * largest_recorded * sizeof(Real);
-    auto const keyframe_call = run.call_bytes + m * of_frame - std::min(counted_twice, m * of_frame);
-    auto const frames_call = calls * run.call_bytes + at_once * of_frame;
+    auto const keyframe_call = run.call_bytes.value_or(0) + m * of_frame - std::min(counted_twice, m * of_frame);
+    auto const frames_call = calls * run.call_bytes.value_or(0) + at_once * of_frame;
     bytes.network = std::max(keyframe_call, frames_call);
     auto const recording = m > 0 ? bytes.keyframe_latents + keyframe_call : 0;
     auto const injecting = bytes.blend_plans + std::max(frames_call, calls * making);
