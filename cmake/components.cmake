@@ -233,7 +233,6 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/seeded_tensor.hpp
     reference/site_list.hpp
     reference/spatial_transformer.hpp
-    reference/stopping_processor.hpp
     reference/time_embedding.hpp
     reference/transformer_block.hpp
     reference/unet.hpp

@@ -16,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -65,6 +66,10 @@ struct forward_pass {
     any_processor<Real> processor;       ///< runs at the self-attention sites
     any_loop loop{};                     ///< over frames
     std::vector<Real> time{};            ///< of the network's time_embedding, after SiLU [time_channels]
+    /// The last site that is wanted; none runs the whole network.
+    std::optional<site_index> last_site{};
+    /// Whether the last wanted site has run: layers then return at once, with results that nobody reads.
+    mutable bool is_over = false;
 
     /// Calls `body(i)` for every entry of the stack.
     void each_frame(loop_body body) const {

@@ -13,7 +13,6 @@
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/reference_weights.hpp>
-#include <genrender/reference/stopping_processor.hpp>
 #include <genrender/reference/unet.hpp>
 #include <genrender/sampling/classifier_free_guidance.hpp>
 #include <genrender/sampling/denoiser.hpp>
@@ -154,17 +153,16 @@ public:
             if (!last[branch]) {
                 continue;
             }
-            internal::stopping_processor<Real> const stopping{processor, *last[branch]};
-            auto pass = pass_of(branch, in, stopping);
-            try {
-                auto encoded = encode(pass, in);
-                if (lent != nullptr && is_plain_before_decoder(processor, branch)) {
-                    lent->put(branch, {encoded, pass.time});
-                }
-                unet_->decode(pass, std::move(encoded));
-            } catch (internal::last_site_has_run const&) {
-                // As asked.
+            auto pass = pass_of(branch, in, processor);
+            pass.last_site = last[branch];
+            auto encoded = encode(pass, in);
+            if (pass.is_over) {
+                continue;
             }
+            if (lent != nullptr && is_plain_before_decoder(processor, branch)) {
+                lent->put(branch, {encoded, pass.time});
+            }
+            unet_->decode(pass, std::move(encoded));
         }
     }
 
@@ -246,7 +244,10 @@ private:
         if (!in.hints) {
             in.hints = hints_.at(in.frames, loop_);
         }
-        auto const control = (*control_)(pass, in.scaled, in.t, in.hints->hints, conditioning_.conditioning_scale);
+        auto control = (*control_)(pass, in.scaled, in.t, in.hints->hints, conditioning_.conditioning_scale);
+        if (pass.is_over) {
+            return control;
+        }
         return unet_->encode(pass, in.scaled, in.t, &control);
     }
 
