@@ -31,6 +31,7 @@ genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nl
 set(genrender_components "")
 genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     genrender.hpp
+    version.hpp
     core/begin_header.inl
     core/each_target.inl
     core/end_header.inl
@@ -122,11 +123,13 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     keyframes/recorder.hpp
     keyframes/stoppable_denoiser.hpp
     blending/blend_plan.hpp
+    blending/blend_plans.hpp
     blending/mix_rows.hpp
     blending/mix_rows.inl
     blending/texel_weights.hpp
     injection/feature_io.hpp
     injection/host_attention_call.hpp
+    injection/injection_settings.hpp
     injection/injector.hpp
     injection/post_attention.hpp
     injection/pre_attention.hpp
@@ -243,7 +246,6 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/seeded_tensor.hpp
     reference/site_list.hpp
     reference/spatial_transformer.hpp
-    reference/stopping_processor.hpp
     reference/time_embedding.hpp
     reference/transformer_block.hpp
     reference/unet.hpp

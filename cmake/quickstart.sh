@@ -10,16 +10,18 @@ sh cmake/quickstart.sh WHAT
   demo      render an animation with the built-in network, and the same frame by frame   (build/demo_output)
   evaluate  the paper's tables on the built-in network: every method, baseline and ablation (build/evaluation);
             with --quick one prompt and one seed, with other options those of the program evaluate
+  tables    write the tables that evaluate and bench have left in build/ into the pages of docs/ that show them
   test      every test but those that are slow by nature: with g++, with clang++ and AddressSanitizer, and those that
             start threads with ThreadSanitizer
   slow_checks
             what continuous integration checks besides: the installed package and each of its headers, what must not
             compile, what the program must refuse, that the rules of the house catch who breaks them, benchmarks for a
-            moment, clang-format and clang-tidy
+            moment, clang-format and clang-tidy; that every public name has a comment
   bench     every benchmark beside its floor and its target, as one table (build/bench/benchmarks.md and .json); PyTorch,
             NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
             earlier run, with --no-peers without the programs of others (benchmarks/README.md)
+  docs      the reference of every public name, from the comments above them (build/docs/html/index.html)
   packages  install the Debian packages that all of these need, and do no more
 
 Packages that are missing are installed with apt-get; nothing is downloaded when all are there.
@@ -35,7 +37,8 @@ bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev li
 # What its tests need besides.
 test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels valgrind"
 # What reads the sources without compiling them. Another clang-format would break other lines.
-slow_check_packages="$test_packages clang-format-14 clang-tidy"
+docs_packages="cmake doxygen"
+slow_check_packages="$test_packages $docs_packages clang-format-14 clang-tidy"
 
 say() {
     printf '\n== %s\n' "$*"
@@ -70,7 +73,7 @@ install_packages() {
         stop "This script installs packages on Debian 12, Ubuntu 24.04 and newer. On this system, install by hand
   a C++20 compiler (g++ 12 or clang++ 14, or newer), CMake 3.25, Ninja, pkg-config,
   Eigen 3.4, xtensor 0.24, GLM 0.9.9; for the examples assimp 5, Bullet 3, OpenEXR 3, libpng, libwebp, CLI11 2,
-  nlohmann_json 3; for the tests doctest 2.4, Google Benchmark 1.7, valgrind, clang-format 14 and clang-tidy
+  nlohmann_json 3; for the tests doctest 2.4, Google Benchmark 1.7, valgrind, clang-format 14, clang-tidy and Doxygen 1.9
 and then run: cmake --workflow --preset demo (or test, or bench)"
     fi
     missing=$(missing_packages "$@")
@@ -184,6 +187,13 @@ bench() {
     ls build/bench/benchmarks.*
 }
 
+docs() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $docs_packages
+    say "The reference"
+    cmake -D OUT=build/docs -P docs/reference.cmake
+}
+
 cd "$(dirname "$0")/.."
 case ${1-} in
     demo) demo ;;
@@ -191,12 +201,14 @@ case ${1-} in
         shift
         evaluate "$@"
         ;;
+    tables) cmake -P cmake/write_tables.cmake ;;
     test) run_tests ;;
     slow_checks) slow_checks ;;
     bench)
         shift
         bench "$@"
         ;;
+    docs) docs ;;
     packages) # shellcheck disable=SC2086 # a list of words
         install_packages $slow_check_packages $evaluate_packages ;;
     *)

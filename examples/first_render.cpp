@@ -7,10 +7,11 @@
 
 #include <exception>
 
-// readme:begin first_render
+// docs:begin first_render
 #include <genrender/genrender.hpp>
 
 #include <iostream>
+#include <utility>
 
 /// Consistent latents of all frames of an animation, for your decoder.
 template <genrender::denoiser Phi>
@@ -20,17 +21,17 @@ genrender::latents<float> stylise(Phi const& your_network, genrender::uv_maps co
     settings.keyframes.count = 2;
     settings.noise.seed = 7;
 
-    genrender::render_report report;
-    auto z = genrender::render(your_network, to_uv_view(UV), settings, report, [](genrender::progress const& now) {
+    auto const show = [](genrender::progress const& now) {
         std::cerr << "step " << now.step + 1 << ", " << now.remaining_seconds << " s left\r";
         return true; // false ends the run
-    });
-    for (auto const& [grid, coverage] : report.coverage()) {
+    };
+    auto result = genrender::render(your_network, to_uv_view(UV), {.settings = settings, .observer = show});
+    for (auto const& [grid, coverage] : result.report.coverage) {
         std::cout << grid.height << "x" << grid.width << ": keyframes cover " << 100 * coverage.share() << " %\n";
     }
-    return z;
+    return std::move(result.z);
 }
-// readme:end
+// docs:end
 
 int main() {
     try {

@@ -67,29 +67,31 @@ void run(render_options const& options, guidance_source const& source, reference
     auto const nearness = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
     network const phi(weights, weights.conditioning(to_view(nearness), options.prompt), loop);
 
-    render_report report;
-    latents<float> z;
+    render_result<float> result;
     auto const grown = resident_growth([&] {
-        z = with_canonical_maps(options, source, [&](auto const& maps) {
+        result = with_canonical_maps(options, source, [&](auto const& maps) {
             return with_method(options.method, [&](auto const& method) {
-                return render(method, phi, maps, options.settings, report, progress_line(options.is_quiet), loop);
+                return render<std::remove_cvref_t<decltype(method)>>(phi, maps,
+                                                                     {.settings = options.settings,
+                                                                      .method = method,
+                                                                      .observer = progress_line(options.is_quiet),
+                                                                      .loop = loop});
             });
         });
     });
 
-    auto const images = decoded(z);
+    auto const images = decoded(result.z);
     std::vector<rgb8_image> frames;
     for (std::size_t i = 0; i < images.shape()[0]; ++i) {
         frames.push_back(rgb_picture(to_view(images)[i]));
     }
     write_pictures(options.out, source.guidance, frames);
-    auto json = report_of(options, source, report, images);
+    auto json = report_of(options, source, result.report, images);
     json["render_resident_bytes"] = grown ? nlohmann::ordered_json(*grown) : nlohmann::ordered_json(nullptr);
-    json["seconds"] = seconds_of(report, total.seconds());
+    json["seconds"] = seconds_of(result.report, total.seconds());
     write_text(options.out / "report.json", json.dump(2) + "\n");
     if (earlier) {
-        write_comparison(options.out, *earlier, frames,
-                         method_name(render_method_names[static_cast<std::size_t>(options.method)]));
+        write_comparison(options.out, *earlier, frames, method_name(name_in(method_names, options.method)));
     }
 }
 

@@ -54,6 +54,7 @@ glm::vec2 centre_of(grid_extents grid, std::size_t row, std::size_t column) {
 
 // The user's model of correspondence_map. A surface point is what the scene says it is: here a place on the ball at
 // rest.
+// docs:begin rest_pose_map
 struct rest_pose_map {
     using point_type = glm::vec3;
     rolling_ball ball;
@@ -75,6 +76,7 @@ struct rest_pose_map {
     }
 };
 static_assert(correspondence_map<rest_pose_map>);
+// docs:end
 
 int main() try {
     // What a renderer would draw: UVs as on a globe, pinched at the poles, and how near the ball is.
@@ -102,15 +104,16 @@ int main() try {
     render_settings<float> settings;
     settings.steps = 2;
     settings.keyframes.count = 2;
-    render_report by_rest_pose;
-    render_report by_footprints;
+    // docs:begin own_correspondence
     auto const make_map = [&](grid_extents grid) { return rest_pose_map{ball, grid}; };
-    render(network, UV, make_map, settings, by_rest_pose);
-    render(network, UV, settings, by_footprints);
+    auto const by_rest_pose =
+        render<generative_rendering, rest_pose_map>(network, UV, {.settings = settings, .make_map = make_map});
+    auto const by_footprints = render(network, UV, {.settings = settings});
+    // docs:end
 
     std::printf("Tokens of the ball that some keyframe shows, too:\n  feature map   rest pose   footprints\n");
-    for (auto const& [grid, count] : by_rest_pose.coverage()) {
-        auto const footprints = by_footprints.coverage().at(grid);
+    for (auto const& [grid, count] : by_rest_pose.report.coverage) {
+        auto const footprints = by_footprints.report.coverage.at(grid);
         std::printf("  %3zu x %-3zu    %8.1f %%   %8.1f %%\n", grid.height, grid.width, 100 * count.share(),
                     100 * footprints.share());
         require_value(count.share() > 0.8, "your_own_correspondence", "coverage", count.share(), "above 0.8");

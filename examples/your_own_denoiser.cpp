@@ -19,6 +19,7 @@ using my_tensor = my_engine::tensor;
 
 // First way in: at each site the engine calls back, and lends the processor its operations. Where it has none of its
 // own, as here for attention and mixing, the library's kernels run on views of its memory.
+// docs:begin my_call
 struct my_call {
     using features_type = my_tensor;
     using real_type = float;
@@ -51,7 +52,9 @@ struct my_call {
         return F;
     }
 };
+// docs:end
 
+// docs:begin calling_denoiser
 struct calling_denoiser : my_denoiser {
     template <attention_processor<my_call> Processor>
     void operator()(strided_view<float, 4> x0, strided_view<float const, 4> z, float sigma,
@@ -62,9 +65,11 @@ struct calling_denoiser : my_denoiser {
         });
     }
 };
+// docs:end
 
 // Second way in: nothing can be called from within a static graph. It takes extra inputs and gives extra outputs
 // instead.
+// docs:begin graph_denoiser
 struct graph_denoiser : my_denoiser {
     template <feature_io_processor<my_tensor, float> Processor>
     void operator()(strided_view<float, 4> x0, strided_view<float const, 4> z, float sigma,
@@ -91,6 +96,7 @@ struct graph_denoiser : my_denoiser {
         }
     }
 };
+// docs:end
 
 static_assert(attention_call<my_call> && denoiser<calling_denoiser> && denoiser<graph_denoiser>);
 
@@ -100,10 +106,9 @@ int main() try {
     render_settings<float> settings;
     settings.steps = 4;
     settings.keyframes.count = 3;
-    render_report report;
-    auto const called = render(calling_denoiser{}, UV, settings, report);
-    auto const graphed = render(graph_denoiser{}, UV, settings, report);
-    auto const alone = render(calling_denoiser{}, UV, per_frame(settings, noise_kind::uv), report);
+    auto const called = render(calling_denoiser{}, UV, {.settings = settings}).z;
+    auto const graphed = render(graph_denoiser{}, UV, {.settings = settings}).z;
+    auto const alone = render(calling_denoiser{}, UV, {.settings = per_frame(settings, noise_kind::uv)}).z;
 
     float difference = 0;
     float effect = 0;

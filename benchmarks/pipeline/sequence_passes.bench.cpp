@@ -64,6 +64,7 @@ struct world {
     correspondence_set<chosen_correspondence<2>> maps;
     progress_meter meter{1, 1, {}};
     render_report report;
+    report_writer writer{report};
     latents<float> z = latents<float>::from_shape({frame_count, 12, size / 2, size / 2});
     latents<float> x0 = z;
     std::vector<frame_index> KF{{2}, {9}, {5}, {0}};
@@ -83,19 +84,18 @@ struct world {
     world(world const&) = delete;
 
     using run_type = sequence_run<network, chosen_correspondence<2>>;
-    using evaluation_type = sequence_passes<network, chosen_correspondence<2>>;
-    run_type run() { return {&phi, &maps, &settings, loop, &meter, &report}; }
+    using passes_type = sequence_passes<network, chosen_correspondence<2>>;
+    run_type run() { return {&phi, &maps, &settings, loop, &meter, &writer}; }
 };
 
 /// Every frame with the features of four keyframes.
-void inject(world::evaluation_type const& evaluation, feature_bank<network::features_type> const& bank,
+void inject(world::passes_type const& passes, feature_bank<network::features_type> const& bank,
             std::vector<frame_index> const& KF) {
-    injection_settings<float> injection;
-    injection.alpha = [&](site_index site) { return evaluation.alpha(site); };
-    evaluation.denoise_frames([&](std::span<frame_index const> frames) {
-        auto const rows = evaluation.plan_rows(
+    passes.denoise_frames([&](std::span<frame_index const> frames) {
+        auto plans = passes.make_plans(
             frames, [&](auto const& map, frame_index i) { return make_blend_plan<float>(map, KF, i); });
-        return injector<network::features_type, float>(bank, KF, rows, injection);
+        return injector<network::features_type, float>(bank, KF, std::move(plans), {},
+                                                       [&](site_index site) { return passes.alpha(site); });
     });
 }
 
@@ -105,8 +105,8 @@ void injected_pass(benchmark::State& state) {
     world one(1);
     auto const run_many = many.run();
     auto const run_one = one.run();
-    world::evaluation_type const on_many(run_many, many.x0, many.z, 1.0F, 0);
-    world::evaluation_type const on_one(run_one, one.x0, one.z, 1.0F, 0);
+    world::passes_type const on_many(run_many, many.x0, many.z, 1.0F, 0);
+    world::passes_type const on_one(run_one, one.x0, one.z, 1.0F, 0);
     auto const bank_of_many = on_many.record_keyframes(many.KF, true);
     auto const bank_of_one = on_one.record_keyframes(one.KF, true);
     time_against(
@@ -126,9 +126,9 @@ void evaluation_with_reuse(benchmark::State& state) {
     without.settings.reuses_keyframes = false;
     auto const evaluate = [](world& w) {
         auto const run = w.run();
-        world::evaluation_type const evaluation(run, w.x0, w.z, 1.0F, 0);
-        auto const bank = evaluation.record_keyframes(w.KF, true);
-        inject(evaluation, bank, w.KF);
+        world::passes_type const passes(run, w.x0, w.z, 1.0F, 0);
+        auto const bank = passes.record_keyframes(w.KF, true);
+        inject(passes, bank, w.KF);
     };
     time_against(
         state, floor_of{"keyframes computed twice"}, [&] { evaluate(with); }, [&] { evaluate(without); });

@@ -93,12 +93,13 @@ struct run_seconds {
 
 template <class Run>
 run_seconds render_timed(Run const& run, render_settings<float> const& settings) {
-    render_report report;
+    double denoiser = 0;
     auto const total = seconds_of([&] {
-        auto const z = render(run.phi(), run.maps(), settings, report, {}, run.loop());
-        benchmark::DoNotOptimize(z.data());
+        auto const result = render(run.phi(), run.maps(), {.settings = settings, .loop = run.loop()});
+        benchmark::DoNotOptimize(result.z.data());
+        denoiser = result.report.denoiser_seconds;
     });
-    return {total, report.denoiser_seconds()};
+    return {total, denoiser};
 }
 
 /// The share of a run that is spent outside the denoiser's calls: noise, geometry, keyframes, plans, normalisation, the

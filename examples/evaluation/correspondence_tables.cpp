@@ -194,7 +194,7 @@ std::string noise_table(std::vector<named_maps> const& animations, threaded_loop
     auto const add = [&](std::string const& name, noise_reading reading, std::size_t T) {
         noise_settings settings;
         settings.reading = reading;
-        settings.T = T;
+        settings.T = T > 0 ? std::optional(T) : std::nullopt;
         rows.emplace_back(name + (T == 0 ? ", T matched" : ", T = " + std::to_string(T)), settings);
     };
     for (std::size_t const T : {0U, 64U, 256U, 1024U, 2048U}) {

@@ -12,7 +12,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -44,8 +46,7 @@ std::vector<compared_method<Network>> compared_methods() {
     using settings_type = render_settings<float>;
     std::vector<compared_method<Network>> methods;
     auto const run = [](auto const& method, Network const& phi, uv_maps_view const& UV, settings_type const& settings) {
-        render_report report;
-        return render(method, phi, UV, settings, report);
+        return render<std::remove_cvref_t<decltype(method)>>(phi, UV, {.settings = settings, .method = method}).z;
     };
     auto const add_frame_by_frame = [&](std::string group, noise_kind noise) {
         methods.push_back({"Per-Frame", noise_name(noise), std::move(group),
@@ -66,6 +67,8 @@ std::vector<compared_method<Network>> compared_methods() {
         methods.push_back({std::move(name), noise_name(noise), std::move(group),
                            [run, noise, change](Network const& phi, uv_maps_view const& UV, settings_type settings) {
                                settings.noise.kind = noise;
+                               // The paper's, which is not the default.
+                               settings.normalization.statistics = adain_statistics::mean_and_deviation;
                                change(settings);
                                return run(generative_rendering{}, phi, UV, settings);
                            }});
@@ -83,9 +86,9 @@ std::vector<compared_method<Network>> compared_methods() {
     add_baseline("TokenFlow*", "noise", noise_kind::uv, tokenflow{});
 
     add_ours("No pre-attention", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.pre_attention = false; });
+             [](settings_type& settings) { settings.injection.pre_attention = false; });
     add_ours("No post-attention", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.post_attention = false; });
+             [](settings_type& settings) { settings.injection.post_attention = false; });
     add_ours("Ours", "ablation", noise_kind::fixed, as_it_is);
     add_ours("Ours", "ablation", noise_kind::independent, as_it_is);
     add_ours("No AdaIN", "ablation", noise_kind::uv,
@@ -99,11 +102,11 @@ std::vector<compared_method<Network>> compared_methods() {
     };
     auto const by_texels = [](settings_type& settings, std::size_t T) {
         settings.correspondence.kind = correspondence_kind::texel_grid;
-        settings.correspondence.texels.T = T;
+        settings.correspondence.texels.T = T > 0 ? std::optional(T) : std::nullopt;
     };
     auto const read_noise = [](settings_type& settings, noise_reading reading, std::size_t T) {
         settings.noise.reading = reading;
-        settings.noise.T = T;
+        settings.noise.T = T > 0 ? std::optional(T) : std::nullopt;
     };
     for (std::size_t const T : {64U, 256U, 1024U, 4096U}) {
         add_variant("Texels " + std::to_string(T), "UV",

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,7 +76,7 @@ struct correspondence_options {
         settings.correspondence.kind = chosen<correspondence_kind>(correspondence, correspondence_names);
         settings.correspondence.texels.T = feature_texels;
         settings.noise.reading = chosen<noise_reading>(noise, noise_names);
-        settings.noise.T = noise_texels;
+        settings.noise.T = noise_texels > 0 ? std::optional(noise_texels) : std::nullopt;
         settings.noise.background = chosen<background_noise>(background, background_names);
         auto const has_texels = settings.correspondence.kind == correspondence_kind::texel_grid;
         settings.average = !average.empty() ? chosen<texel_average>(average, average_names)

@@ -15,13 +15,16 @@
 #include <span>
 
 /// The door: how the library looks into the engine's tensors. It lies in the engine's namespace and copies nothing.
+// docs:begin to_view
 namespace my_engine {
 inline genrender::strided_view<float, 3> to_view(tensor const& t) { return {t.memory.get(), t.sizes, t.strides}; }
 } // namespace my_engine
+// docs:end
 
 namespace genrender::examples {
 
 /// What both ways share: what the network is, and the way of latents through it. Prompts and guidance are its own.
+// docs:begin my_denoiser
 struct my_denoiser {
     using real_type = float;
     using features_type = my_engine::tensor;
@@ -52,5 +55,6 @@ struct my_denoiser {
                 {frame, channel, token * std::ptrdiff_t{grid.width}, token}};
     }
 };
+// docs:end
 
 } // namespace genrender::examples

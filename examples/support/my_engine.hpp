@@ -175,6 +175,7 @@ struct self_attention {
 
 /// A self-attention module as it is built into a static graph, of the engine's operations alone. `in` are the graph's
 /// extra inputs at the module, named as genrender::feature_inputs names them.
+// docs:begin self_attention_of_graph
 template <class Inputs>
 tensor self_attention_of_graph(self_attention const& module, tensor const& f, Inputs const& in) {
     key_values const own{module.key(f), module.value(f)};
@@ -201,6 +202,7 @@ tensor self_attention_of_graph(self_attention const& module, tensor const& f, In
     }
     return F;
 }
+// docs:end
 
 /// A network with two self-attention modules that predicts v, guided by two prompts: 0 the empty one, 1 the user's.
 struct network {

@@ -4,6 +4,7 @@
 
 #include "../scenes/scenes.hpp"
 #include "correspondence_options.hpp"
+#include "names.hpp"
 
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
@@ -28,13 +29,6 @@
 namespace genrender::examples {
 
 using namespace genrender::reference;
-
-/// How the animation is rendered: the paper's method, or a baseline of its comparison.
-enum class render_method : std::uint8_t { generative_rendering, per_frame, pix2video, tokenflow };
-
-/// Their names on the command line and in reports, in this order.
-inline constexpr std::array<std::string_view, 4> render_method_names{"generative_rendering", "per_frame", "pix2video",
-                                                                     "tokenflow"};
 
 /// Everything a run is told. One of `scene`, `model` and `maps` is not empty.
 struct render_options {
@@ -87,7 +81,6 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     // Descriptions say what is allowed; the checks' own would say it again in another tongue.
     auto const positive = CLI::Range(std::size_t{1}, std::size_t{1} << 20).description("");
     auto const one_of = [](auto names) { return CLI::IsMember(std::move(names)).description(""); };
-    using names_type = std::vector<std::string>;
     CLI::Validator const not_empty([](std::string& text) { return text.empty() ? "is empty, expected a path" : ""; },
                                    "");
 
@@ -96,7 +89,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
 
     auto* const input = app.add_option_group("Input", "what is rendered (one of the three)");
     input->add_option("--scene", options.scene, "built-in scene: " + detail::listed(scenes::names, ", "))
-        ->check(one_of(names_type(scenes::names.begin(), scenes::names.end())))
+        ->check(one_of(std::vector<std::string>(scenes::names.begin(), scenes::names.end())))
         ->type_name("NAME");
     input->add_option("--model", options.model, "animated model file, of any format that assimp reads")
         ->check(not_empty)
@@ -142,7 +135,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     std::string sampler_name = "euler";
     app.add_option("--sampler", sampler_name, "euler, heun or dpmpp_2m")
         ->capture_default_str()
-        ->check(one_of(names_type{"euler", "heun", "dpmpp_2m"}))
+        ->check(one_of(all_names(sampler_names)))
         ->type_name("NAME");
 
     std::string method = "generative_rendering";
@@ -150,7 +143,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
                    "generative_rendering, or a baseline: per_frame, pix2video (frames attend to the first and the\n"
                    "previous one), tokenflow (outputs of keyframes are carried along)")
         ->capture_default_str()
-        ->check(one_of(names_type(render_method_names.begin(), render_method_names.end())))
+        ->check(one_of(all_names(method_names)))
         ->type_name("NAME");
     std::string noise;
     auto* const noise_option =
@@ -158,7 +151,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
                        "initial noise: uv (moves with the surfaces), fixed (sticks to "
                        "the screen) or independent; uv, for per_frame independent, for the other "
                        "baselines fixed")
-            ->check(one_of(names_type{"uv", "fixed", "independent"}))
+            ->check(one_of(all_names(noise_names)))
             ->type_name("KIND");
     auto* const ours = app.add_option_group("Of the method", "not with a baseline, but for --keyframes of tokenflow");
     float alpha = 0.7f;
@@ -174,18 +167,19 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     bool no_pre = false;
     bool no_post = false;
     bool no_adain = false;
-    bool adain_means = false;
+    bool adain_deviations = false;
     ours->add_flag("--no-pre", no_pre, "no pre-attention injection (eq. 3 and 5)");
     ours->add_flag("--no-post", no_post, "no post-attention injection (eq. 6)");
     auto* const without = ours->add_flag("--no-adain", no_adain, "no latent normalisation");
-    ours->add_flag("--adain-means", adain_means, "latent normalisation of means alone, not of deviations")
+    ours->add_flag("--adain-deviations", adain_deviations,
+                   "latent normalisation of means and deviations, the paper's; of means alone without it")
         ->excludes(without);
 
     std::string storage = "same";
     ours->add_option("--feature-storage", storage,
                      "of the keyframes' features: same (as computed), float16 or bfloat16, in half the memory")
         ->capture_default_str()
-        ->check(one_of(names_type{"same", "float16", "bfloat16"}))
+        ->check(one_of(all_names(storage_names)))
         ->type_name("FORMAT");
 
     options.correspondence.add_to(app);
@@ -218,8 +212,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         "Exit code: 0 done, 1 failed, 2 bad arguments.");
     try {
         app.parse(argc, argv);
-        auto const chosen = std::find(render_method_names.begin(), render_method_names.end(), method);
-        options.method = static_cast<render_method>(chosen - render_method_names.begin());
+        options.method = value_in(method_names, method);
         if (!(alpha >= 0 && alpha <= 1)) { // Not-a-number passes a range.
             throw CLI::ValidationError("--alpha", "is not a number, expected 0 to 1");
         }
@@ -246,17 +239,14 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     if (keyframes_option->count() > 0) {
         options.keyframes = keyframes;
     }
-    settings.sampler = sampler_name == "heun"       ? sampler_kind::heun
-                       : sampler_name == "dpmpp_2m" ? sampler_kind::dpmpp_2m
-                                                    : sampler_kind::euler;
+    settings.sampler = value_in(sampler_names, sampler_name);
     settings.alpha = [alpha](std::size_t, attention_site const&) { return alpha; };
-    settings.pre_attention = !no_pre;
-    settings.post_attention = !no_post;
+    settings.injection.pre_attention = !no_pre;
+    settings.injection.post_attention = !no_post;
     settings.normalization.enabled = !no_adain;
-    settings.normalization.statistics = adain_means ? adain_statistics::mean : adain_statistics::mean_and_deviation;
-    settings.feature_storage = storage == "float16"    ? feature_storage::f16
-                               : storage == "bfloat16" ? feature_storage::bf16
-                                                       : feature_storage::same;
+    settings.normalization.statistics =
+        adain_deviations ? adain_statistics::mean_and_deviation : adain_statistics::mean;
+    settings.keyframe_storage = value_in(storage_names, storage);
     settings.noise.seed = options.seed;
     settings.keyframes.seed = options.seed;
     if (options.method == render_method::per_frame) {
@@ -265,9 +255,7 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         settings = baseline_settings(settings);
     }
     if (noise_option->count() > 0) {
-        settings.noise.kind = noise == "uv"      ? noise_kind::uv
-                              : noise == "fixed" ? noise_kind::fixed
-                                                 : noise_kind::independent;
+        settings.noise.kind = value_in(noise_names, noise);
     }
     return options;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "guidance_source.hpp"
+#include "names.hpp"
 #include "render_options.hpp"
 #include "render_output.hpp"
 
@@ -41,8 +42,8 @@ private:
 /// Seconds by the clock on the wall: in total, in the denoiser (attention and mixing included), in the rest of the
 /// library, and in everything else: reading, rasterising, decoding and writing.
 inline nlohmann::ordered_json seconds_of(render_report const& report, double total) {
-    auto const denoiser = report.denoiser_seconds();
-    auto const library = report.library_seconds();
+    auto const denoiser = report.denoiser_seconds;
+    auto const library = report.library_seconds;
     return {{"total", total}, {"denoiser", denoiser}, {"library", library}, {"other", total - denoiser - library}};
 }
 
@@ -81,9 +82,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
                                         render_report const& report, tensor<float, 4> const& images) {
     nlohmann::ordered_json json;
     auto const& settings = options.settings;
-    constexpr std::array<char const*, 3> noises{"uv", "fixed", "independent"};
-    constexpr std::array<char const*, 3> samplers{"euler", "heun", "dpmpp_2m"};
-    json["method"] = render_method_names[static_cast<std::size_t>(options.method)];
+    json["method"] = name_in(method_names, options.method);
     auto& told = json["settings"];
     told["input"] = !options.scene.empty()   ? options.scene
                     : !options.model.empty() ? options.model.string()
@@ -94,10 +93,10 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["size"] = {source.image.height, source.image.width};
     told["map_size"] = {source.guidance.uv.grid().height, source.guidance.uv.grid().width};
     told["steps"] = settings.steps;
-    told["sampler"] = samplers[static_cast<std::size_t>(settings.sampler)];
+    told["sampler"] = name_in(sampler_names, settings.sampler);
     told["seed"] = options.seed;
-    told["vectors"] = name_of(report.vector_target());
-    told["noise"] = noises[static_cast<std::size_t>(settings.noise.kind)];
+    told["vectors"] = name_of(report.kernels);
+    told["noise"] = name_in(noise_names, settings.noise.kind);
     auto const& matched = options.correspondence;
     if (settings.noise.kind == noise_kind::uv) {
         told["noise_reading"] = matched.noise;
@@ -111,10 +110,9 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
         told["correspondence"] = matched.correspondence;
         told["average"] = settings.average == texel_average::plain ? "plain" : "quality";
         told["alpha"] = settings.alpha(0, {});
-        constexpr std::array<char const*, 3> storages{"same", "float16", "bfloat16"};
-        told["feature_storage"] = storages[static_cast<std::size_t>(settings.feature_storage)];
-        told["pre_attention"] = settings.pre_attention;
-        told["post_attention"] = settings.post_attention;
+        told["feature_storage"] = name_in(storage_names, settings.keyframe_storage);
+        told["pre_attention"] = settings.injection.pre_attention;
+        told["post_attention"] = settings.injection.post_attention;
         told["adain"] = !settings.normalization.enabled                               ? "none"
                         : settings.normalization.statistics == adain_statistics::mean ? "means"
                                                                                       : "means and deviations";
@@ -123,7 +121,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     getrusage(RUSAGE_SELF, &usage);
     json["peak_resident_bytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
     json["coverage"] = nlohmann::ordered_json::object();
-    for (auto const& [grid, count] : report.coverage()) {
+    for (auto const& [grid, count] : report.coverage) {
         json["coverage"][std::to_string(grid.height) + "x" + std::to_string(grid.width)] = count.share();
     }
     pixel_correspondence const pixels(to_uv_view(source.guidance.uv), source.image);
@@ -133,7 +131,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
         json["correspondence_error"][std::to_string(interval)] =
             error ? nlohmann::ordered_json(*error) : nlohmann::ordered_json(nullptr);
     }
-    json["frames_without_background"] = report.skipped_frames();
+    json["frames_without_background"] = report.skipped_frames;
     json["notes"] = source.notes;
     return json;
 }

@@ -7,6 +7,8 @@
 #error "genrender is C++20: compile with -std=c++20 or later"
 #endif
 
+#include <genrender/version.hpp>
+
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/half_precision.hpp>
@@ -93,11 +95,13 @@
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 
 #include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/blend_plans.hpp>
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/injection/host_attention_call.hpp>
+#include <genrender/injection/injection_settings.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/injection/post_attention.hpp>
 #include <genrender/injection/pre_attention.hpp>

@@ -31,7 +31,6 @@
 #include <genrender/reference/seeded_tensor.hpp>
 #include <genrender/reference/site_list.hpp>
 #include <genrender/reference/spatial_transformer.hpp>
-#include <genrender/reference/stopping_processor.hpp>
 #include <genrender/reference/time_embedding.hpp>
 #include <genrender/reference/transformer_block.hpp>
 #include <genrender/reference/unet.hpp>

@@ -5,6 +5,7 @@
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/keyframes/recorder.hpp>
+#include "../support/plans_of.hpp"
 
 #include <doctest/doctest.h>
 
@@ -92,10 +93,9 @@ TEST_SUITE("attention/attention_processor") {
         std::vector<Real> const weights{Real(0.75), Real(0.25), Real(0.75), Real(0.25),
                                         Real(0.75), Real(0.25), Real(0.75), Real(0.25)};
         injector<features, Real> const inject(bank, KF,
-                                              [&](site_index, frame_index) {
+                                              testing::plans_of<Real>(sites, frames, [&](site_index, frame_index) {
                                                   return sparse_rows<Real>{offsets, sources, weights};
-                                              },
-                                              {});
+                                              }));
         CHECK(testing::check_attention_processor_laws<Real>(inject, frames, 5, 4, sites).text() == "");
     }
 

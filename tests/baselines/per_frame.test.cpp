@@ -20,8 +20,7 @@ TEST_SUITE("baselines/per_frame") {
         testing::analytic_denoiser<double> const phi{.grid = {8, 8}, .attention = 0.5};
         render_settings<double> settings;
         settings.steps = 5;
-        render_report report;
-        auto const all = render(phi, to_uv_view(maps), per_frame(settings), report);
+        auto const [all, report, is_cancelled] = render(phi, to_uv_view(maps), {.settings = per_frame(settings)});
 
         auto z = latents<double>::from_shape({1, 3, 8, 8});
         for (std::uint32_t t = 0; t < 64; ++t) {
@@ -41,8 +40,8 @@ TEST_SUITE("baselines/per_frame") {
         for (std::size_t e = 0; e < z.size(); ++e) {
             CHECK(all.data()[2 * z.size() + e] == doctest::Approx(z.data()[e]).epsilon(1e-12));
         }
-        CHECK(report.coverage().empty());
-        CHECK(report.skipped_frames().empty());
+        CHECK(report.coverage.empty());
+        CHECK(report.skipped_frames.empty());
     }
     TEST_CASE("noise is independent unless asked otherwise and the rest of the settings stays") {
         render_settings<float> settings;

@@ -128,9 +128,8 @@ TEST_SUITE("baselines/pix2video") {
         auto const maps = random_scene(33, 1, {32, 32}, 3);
         layered_denoiser<double> const phi;
         auto settings = baseline_settings(few_steps());
-        render_report report;
-        auto const z = render(pix2video{}, phi, to_uv_view(maps), settings, report);
-        auto const alone = render(phi, to_uv_view(maps), per_frame(settings, noise_kind::fixed), report);
+        auto const z = render<pix2video>(phi, to_uv_view(maps), {.settings = settings}).z;
+        auto const alone = render(phi, to_uv_view(maps), {.settings = per_frame(settings, noise_kind::fixed)}).z;
         CHECK(std::equal(z.begin(), z.end(), alone.begin()));
     }
     TEST_CASE("keyframes are not asked for and no correspondence is compiled") {
@@ -138,41 +137,38 @@ TEST_SUITE("baselines/pix2video") {
         layered_denoiser<double> const phi;
         auto settings = few_steps();
         settings.keyframes.count = 99; // more than there are
-        render_report report;
         auto const make_map = [&](grid_extents grid) {
             FAIL("no map is needed");
             return texel_grid(to_uv_view(maps), grid);
         };
-        CHECK_NOTHROW(render(pix2video{}, phi, to_uv_view(maps), make_map, settings, report));
-        CHECK(report.coverage().empty());
+        auto const result =
+            render<pix2video, texel_grid>(phi, to_uv_view(maps), {.settings = settings, .make_map = make_map});
+        CHECK(result.report.coverage.empty());
     }
     TEST_CASE("latents are normalised as the settings say") {
         auto const maps = random_scene(33, 3, {32, 32}, 1);
         layered_denoiser<double> const phi;
         auto settings = few_steps();
-        render_report report;
-        auto const with = render(pix2video{}, phi, to_uv_view(maps), settings, report);
+        auto const with = render<pix2video>(phi, to_uv_view(maps), {.settings = settings}).z;
         settings.normalization.enabled = false;
-        auto const without = render(pix2video{}, phi, to_uv_view(maps), settings, report);
+        auto const without = render<pix2video>(phi, to_uv_view(maps), {.settings = settings}).z;
         CHECK(frame_difference<double>(with, to_view(without), 0) < 1e-9); // the frame that gives the statistics
         CHECK(frame_difference<double>(with, to_view(without), 2) > 1e-6);
     }
     TEST_CASE("the observer can end the run") {
         auto const maps = random_scene(33, 3, {32, 32}, 3);
         layered_denoiser<double> const phi;
-        render_report report;
         std::size_t calls = 0;
-        CHECK_THROWS_WITH_AS(render(pix2video{}, phi, to_uv_view(maps), few_steps(), report,
-                                    [&](progress const&) { return ++calls < 5; }),
-                             "render: cancelled by its observer in step 2 of 3", cancelled);
+        auto const result = render<pix2video>(
+            phi, to_uv_view(maps), {.settings = few_steps(), .observer = [&](progress const&) { return ++calls < 5; }});
+        CHECK(result.is_cancelled);
         CHECK(calls == 5);
     }
     TEST_CASE("a denoiser that does not run its processor is refused by site and branch") {
         auto const maps = random_scene(33, 3, {32, 32}, 3);
         deaf phi;
         phi.grid = {8, 8};
-        render_report report;
-        CHECK_THROWS_WITH_AS(render(pix2video{}, phi, to_uv_view(maps), few_steps(), report),
+        CHECK_THROWS_WITH_AS(render<pix2video>(phi, to_uv_view(maps), {.settings = few_steps()}),
                              "sequence_denoiser: features of frames at site decoder.attn1 of branch 0 are missing, "
                              "expected the denoiser to run its processor there",
                              value_error);

@@ -43,6 +43,7 @@ struct small_baseline_run {
     sequential_loop loop;
     progress_meter meter{3, 1000, {}};
     render_report report;
+    report_writer writer{report};
 
     explicit small_baseline_run(std::size_t frame_count = 6)
         : frames(frame_count), maps(random_scene(21, frame_count, {32, 32}, objects)),
@@ -68,7 +69,7 @@ struct small_baseline_run {
     template <class Method>
     latents<Real> estimate(Method const& method, latents<Real> const& z, Real sigma) {
         return sequence_denoiser(phi, grids, to_view(std::as_const(background)), std::span<Real const>(sigmas),
-                                 settings, loop, meter, report, method)(z, sigma);
+                                 settings, loop, meter, writer, method)(z, sigma);
     }
 };
 

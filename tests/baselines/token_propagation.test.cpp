@@ -3,6 +3,7 @@
 #include <genrender/baselines/token_propagation.hpp>
 
 #include "../injection/dense_equations.hpp"
+#include "../support/plans_of.hpp"
 #include <genrender/testing/attention_processor_laws.hpp>
 
 #include <genrender/injection/host_attention_call.hpp>
@@ -58,7 +59,8 @@ TEST_SUITE("baselines/token_propagation") {
             }
         }
         token_propagation<host_features<Real>, Real> propagate() const {
-            return {bank, [this](site_index, frame_index i) { return plans[i.value].rows(); }};
+            return {bank,
+                    plans_of<Real>(2, frames, [this](site_index, frame_index i) { return plans[i.value].rows(); })};
         }
         host_attention_call<Real, matrix_module<Real>> call(attention_place at) const {
             return {at, frames, f, module};

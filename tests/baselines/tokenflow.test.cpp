@@ -281,8 +281,7 @@ TEST_SUITE("baselines/tokenflow") {
             settings.keyframes.count = 2;
             settings.reuses_keyframes = reuses;
             runs = 0;
-            render_report report;
-            return render(tokenflow{}, phi, to_uv_view(maps), settings, report);
+            return render<tokenflow>(phi, to_uv_view(maps), {.settings = settings}).z;
         };
         // Two branches of six sites, of which the decoder has two: one pass of the keyframes and one of each frame.
         auto const expected = run(false);
@@ -307,24 +306,21 @@ TEST_SUITE("baselines/tokenflow") {
         layered_denoiser<double> const phi;
         auto settings = few_steps();
         settings.keyframes.count = 5;
-        render_report report;
-        render(tokenflow{}, phi, to_uv_view(maps), settings, report);
-        CHECK(report.coverage().at({8, 8}).share() == 1); // keyframes all
+        auto const report = render<tokenflow>(phi, to_uv_view(maps), {.settings = settings}).report;
+        CHECK(report.coverage.at({8, 8}).share() == 1); // keyframes all
         settings.keyframes.count = 1;
-        render_report few;
-        render(tokenflow{}, phi, to_uv_view(maps), settings, few);
-        CHECK(few.coverage().at({8, 8}).on_objects == report.coverage().at({8, 8}).on_objects);
-        CHECK(few.coverage().at({8, 8}).share() > 0.3);
-        CHECK(few.coverage().at({8, 8}).share() < 1);
+        auto const few = render<tokenflow>(phi, to_uv_view(maps), {.settings = settings}).report;
+        CHECK(few.coverage.at({8, 8}).on_objects == report.coverage.at({8, 8}).on_objects);
+        CHECK(few.coverage.at({8, 8}).share() > 0.3);
+        CHECK(few.coverage.at({8, 8}).share() < 1);
     }
     TEST_CASE("keyframes that cannot be drawn are refused before anything runs") {
         auto const maps = random_scene(33, 3, {32, 32}, 3);
         layered_denoiser<double> const phi;
         auto settings = baseline_settings(few_steps());
         settings.keyframes.count = 4;
-        render_report report;
-        CHECK_THROWS_WITH_AS(render(tokenflow{}, phi, to_uv_view(maps), settings, report),
+        CHECK_THROWS_WITH_AS(render<tokenflow>(phi, to_uv_view(maps), {.settings = settings}),
                              "draw_keyframes: count is 4, expected 1 to the animation's 3 frames", value_error);
-        CHECK(report.denoiser_seconds() == 0);
+        CHECK(phi.weights[0].queries == 0);
     }
 }

@@ -24,4 +24,23 @@ TEST_SUITE("correspondence/correspondence_set") {
         CHECK_THROWS_WITH_AS(maps.at({2, 2}), "correspondence_set: grid is [2, 2], expected one of the 2 grids added",
                              value_error);
     }
+    TEST_CASE("the tokens of a frame that show an object are counted once") {
+        struct counting_strip : testing::shifted_strip {
+            std::size_t* asked = nullptr;
+            std::optional<point_type> point_at(frame_index i, token_index t) const {
+                ++*asked;
+                return t.value < i.value ? std::nullopt : testing::shifted_strip::point_at(i, t);
+            }
+        };
+        std::size_t asked = 0;
+        correspondence_set<counting_strip> maps;
+        maps.add({1, 4}, [&](grid_extents grid) { return counting_strip{{3, grid.width}, &asked}; });
+        CHECK(asked == 3 * 4);
+        CHECK(maps.tokens_on_objects({1, 4}, {0}) == 4);
+        CHECK(maps.tokens_on_objects({1, 4}, {2}) == 2);
+        CHECK(asked == 3 * 4);
+        CHECK_THROWS_WITH_AS(maps.tokens_on_objects({1, 4}, {3}),
+                             "correspondence_set: i is 3, expected a frame of the map", value_error);
+        CHECK_THROWS_AS(maps.tokens_on_objects({1, 5}, {0}), value_error);
+    }
 }

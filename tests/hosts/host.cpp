@@ -112,8 +112,7 @@ void render_a_box(figures& found) {
         settings.steps = 4;
         settings.sampler = method;
         settings.keyframes.count = 2;
-        render_report report;
-        auto const z_0 = render(phi, UV, settings, report);
+        auto const z_0 = render(phi, UV, {.settings = settings}).z;
         found.emplace_back("frames of sampler " + std::to_string(static_cast<int>(method)),
                            all(z_0.data(), z_0.size()));
     }
@@ -147,18 +146,18 @@ bool refuses_what_is_not_finite() {
         render_settings<float> settings;
         settings.steps = 2;
         settings.keyframes.count = 1;
-        render_report report;
-        refused = refused &&
-                  is_refused("UV of frame 1 at row 30", [&] { render(phi, to_uv_view(maps), settings, report); }) &&
-                  is_refused("maps", [&] {
-                      footprint_map const map(to_uv_view(maps), {16, 16});
-                  });
+        refused =
+            refused &&
+            is_refused("UV of frame 1 at row 30", [&] { render(phi, to_uv_view(maps), {.settings = settings}); }) &&
+            is_refused("maps", [&] {
+                footprint_map const map(to_uv_view(maps), {16, 16});
+            });
         maps = testing::slanted_maps(2);
         settings.sigma_max = from_bits(bits);
-        refused = refused && is_refused("sigma_max", [&] { render(phi, to_uv_view(maps), settings, report); });
+        refused = refused && is_refused("sigma_max", [&] { render(phi, to_uv_view(maps), {.settings = settings}); });
         settings.sigma_max = 10;
         settings.alpha = [bits](std::size_t, attention_site const&) { return from_bits(bits); };
-        refused = refused && is_refused("alpha", [&] { render(phi, to_uv_view(maps), settings, report); });
+        refused = refused && is_refused("alpha", [&] { render(phi, to_uv_view(maps), {.settings = settings}); });
         refused = refused && is_refused("sigma", [&] { scalings_of(prediction::epsilon, from_bits(bits)); });
     }
     return refused;

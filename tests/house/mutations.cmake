@@ -3,7 +3,8 @@
 # Run: cmake -D ROOT=<repository> -D COPY=<scratch folder> -P mutations.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# The copy is a small healthy house: a few headers of three components, their tests, one example and a README that quotes it.
+# The copy is a small healthy house: a few headers of three components, their tests, one example, and a README and pages that
+# quote it and link to each other.
 set(file_head "// SPDX-License-Identifier: MIT\n// [GR eq. 4] A header.\n")
 set(begin "#pragma once\n\n#include <genrender/core/begin_header.inl>\n\n")
 set(end "\n#include <genrender/core/end_header.inl>\n")
@@ -16,7 +17,12 @@ foreach(place IN ITEMS "eq. 1" "eq. 2" "eq. 3" "eq. 4" "eq. 5" "eq. 6" "alg. 1")
     string(APPEND test "    TEST_CASE(\"[GR ${place}] holds\") {}\n")
 endforeach()
 string(REPLACE "[GR eq. 4]" "[GR eq. 1, GR eq. 2, GR eq. 3, GR eq. 4, GR eq. 5, GR eq. 6, GR alg. 1]" header "${header}")
-string(APPEND readme "\n```cpp\nauto a = b[0];\n```\n")
+string(APPEND readme "\n```cpp\nauto a = b[0];\n```\n\n[Pages](docs/README.md), [an option](docs/program.md#the-options-all).\n\n\
+| room | holds |\n|---|---|\n")
+foreach(room IN ITEMS core maps correspondence noise attention sampling keyframes blending injection normalization pipeline
+    baselines scene reference)
+    string(APPEND readme "| `${room}` | [f; g) |\n")
+endforeach()
 string(APPEND test "}\n")
 # The macros of the repository's own list of components, for the small one of this house.
 file(READ ${ROOT}/cmake/components.cmake macros)
@@ -63,7 +69,15 @@ genrender_test_room(testing thing_laws)\ngenrender_test_room(testing mesh_laws N
     endforeach()
     file(WRITE ${COPY}/tests/blending/thing.test.cpp "${test}")
     file(WRITE ${COPY}/examples/story.cpp "// SPDX-License-Identifier: MIT\n// A story.\nint main() {\n\
-    // readme:begin story\n    auto a = b[0];\n    // readme:end\n}\n")
+    // docs:begin story\n    auto a = b[0];\n    // docs:end\n}\n")
+    file(WRITE ${COPY}/examples/support/render_options.hpp "// SPDX-License-Identifier: MIT\n// Options.\n\
+add(\"--speed\");\n")
+    file(WRITE ${COPY}/docs/README.md "# Pages\n\n- [The program](program.md)\n- [Moving](moving_from_0_1_to_0_2.md#new)\n\n\
+<!-- table build/t.md -->\n| a |\n|---|\n| 1; [2 |\n")
+    file(WRITE ${COPY}/docs/program.md "# Program\n\n## The `options`, all\n\n| option |\n|---|\n| `--speed N` |\n\n\
+```cpp\nauto a = b[0];\n```\n\nSee [above](#program), `[no](link)`, [a folder](../examples) and [far](https://example.org).\n\n\
+```sh\n# No heading, [no](link)\n```\n")
+    file(WRITE ${COPY}/docs/moving_from_0_1_to_0_2.md "# Moving\n\n```cpp 0.1\nauto a = old[0];\n```\n\n## New\n\n[Up](README.md)\n")
     file(WRITE ${COPY}/README.md "${readme}")
     file(WRITE ${COPY}/docs/customisation_points.md "# Points\n\n| `listed` | a thing |\n")
 endfunction()
@@ -150,6 +164,12 @@ mutate(include/genrender/genrender.hpp "" "#include <genrender/reference/network
 mutate(include/genrender/scene.hpp "" "#include <genrender/core/index.hpp>\n" "index.hpp>, which is not of scene")
 mutate(include/genrender/reference.hpp "network" "other" "reference.hpp: lacks .*reference/network.hpp")
 mutate(include/genrender/other.hpp "" "${file_head}" "'other.hpp' is no room")
+mutate(include/genrender/version.hpp "" "${file_head}" "version.hpp: has no tests/core/version.test.cpp")
+foreach(file IN ITEMS CHANGELOG.md CITATION.cff packaging/vcpkg/genrender/vcpkg.json)
+    mutate(include/genrender/version.hpp "" "${file_head}#define GENRENDER_VERSION_STRING \"9.8.7\"\n"
+        "${file}: does not tell the version")
+endforeach()
+mutate(include/genrender/version.hpp "" "${file_head}" "version.hpp: is not among the headers of core")
 mutate(${thing} "" "#include <text/text.hpp>\n" "core: .*<text/text.hpp>, of a package that it does not declare")
 mutate(${thing} "" "#  include <slow.h>\n" "core: .*<slow.h>, of a package that it does not declare")
 mutate(include/genrender/scene/mesh.inl "" "#include <text/text.hpp>\n" "scene: .*<text/text.hpp>, of a package that it does not")
@@ -173,6 +193,35 @@ mutate(README.md "| eq. 5 | f [0, 1) | `blending/thing.hpp` |" "| eq. 5 | f |" "
 mutate(${thing} "GR eq. 5, " "" "GR eq. 5 lives in blending/thing.hpp, whose head does not")
 mutate(include/genrender/core/index.hpp "// Indices" "// [GR eq. 5] Indices" "GR eq. 5 has more than one home")
 mutate(${thing_test} "[GR eq. 5]" "[GR eq. 51]" "no test case is tagged .GR eq. 5")
-mutate(README.md "auto a" "auto b" "no block equal to region 'story'")
-mutate(README.md "" "\n```cpp\nint main() {}\n```\n" "2 blocks of C.., of which 1")
-mutate(examples/story.cpp "    // readme:end\n" "" "region 'story' does not end")
+string(REPEAT "\n" 200 many_readme_lines)
+set(moving docs/moving_from_0_1_to_0_2.md)
+mutate(README.md "" "${many_readme_lines}" "README.md: 2[0-9][0-9] lines, at most 200")
+mutate(README.md "| `maps` | " "| maps | " "README.md: the rooms are core.maps.*, its table has core.correspondence")
+mutate(README.md "`pipeline`" "`passes`" "README.md: the rooms are .*, its table has .*injection.normalization.passes")
+mutate(README.md "auto a" "auto b" "README.md: the block of C.. that begins `auto b = b.0.;` is no region")
+mutate(README.md "" "\n```cpp\nint main() {}\n```\n" "README.md: the block of C.. that begins `int main.*is no region")
+mutate(docs/program.md "auto a" "auto b" "docs/program.md: the block of C.. that begins `auto b = b.0.;` is no region")
+mutate(docs/program.md "" "\n```c++\nint main() {}\n```\n" "docs/program.md: the block of C.. that begins `int main.*is no region")
+mutate(docs/program.md "" "\n```cpp 0.1\nint main() {}\n```\n" "docs/program.md: the block of C.. that begins `int main.*is no region")
+mutate(docs/program.md "" "\n```cpp\nint main() {}\n" "docs/program.md: a block of C.. does not end")
+mutate(${moving} "cpp 0.1" "cpp 0.2" "moving_from_0_1_to_0_2.md: the block of C.. that begins `auto a = old.0.;` is no region")
+mutate(examples/story.cpp "    // docs:end\n" "" "region 'story' does not end")
+mutate(examples/story.cpp "auto a" "auto b" "no block of C.. equals region 'story' of examples/story.cpp")
+mutate(${thing_test} "" "// docs:begin proof\nint x;\n// docs:end\n" "no block of C.. equals region 'proof' of tests/blending/thing.test")
+mutate(README.md "docs/README.md" "docs/READ.md" "README.md: links to docs/READ.md, which does not exist")
+mutate(README.md "#the-options-all" "#options" "README.md: links to docs/program.md#options, and docs/program.md has no such heading")
+mutate(docs/program.md "#program" "#programs" "docs/program.md: links to #programs, and docs/program.md has no such heading")
+mutate(docs/program.md "(../examples)" "(examples)" "docs/program.md: links to examples, which does not exist")
+mutate(docs/program.md "`[no](link)`" "[no](link)" "docs/program.md: links to link, which does not exist")
+mutate(docs/program.md "# No heading" "## Heading\n```\n[It](#no-heading-nolink)\n```sh\n" "no such heading")
+mutate(benchmarks/README.md "" "[Figures](../docs/performance.md)\n" "benchmarks/README.md: links to ../docs/performance.md, which does")
+mutate(CHANGELOG.md "" "![Picture](picture.png)\n" "CHANGELOG.md: links to picture.png, which does not exist")
+mutate(docs/README.md "- [The program](program.md)" "- The program" "docs/README.md: does not link to docs/program.md")
+write_house()
+file(REMOVE ${COPY}/docs/README.md)
+verdict("a house without docs/README.md" "docs/README.md: is missing")
+mutate(examples/support/render_options.hpp "" "add(\"--colour\");\n" "docs/program.md: has no row for --colour")
+mutate(docs/program.md "--speed N" "--haste N" "docs/program.md: has a row for --haste, which the program does not know")
+mutate(docs/README.md "| a |\n|---|\n| 1; [2 |\n" "" "docs/README.md: below the mark of build/t.md stands no table")
+mutate(docs/README.md "| 1; [2 |" "| 1 |\nwords" "docs/README.md: below the mark of build/t.md stands no table")
+mutate(docs/README.md "build/t.md" "t.md" "docs/README.md: t.md is no file of a build")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // [GR alg. 1: Phi as a static graph] Extra inputs and outputs say the same as the callback does.
 #include <genrender/injection/feature_io.hpp>
+#include "../support/plans_of.hpp"
 
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/sampling/denoiser.hpp>
@@ -221,12 +222,12 @@ TEST_SUITE("injection/feature_io") {
 
             // The injected pass mixes in the same.
             random_plan<Real> const plan(tokens, KF.size(), 4);
-            injection_settings<Real> settings;
+            injection_settings settings;
             settings.pre_attention = false;
-            auto const rows = [&](site_index, frame_index) { return plan.rows(); };
+            auto const plans = plans_of<Real>(1, frames, [&](site_index, frame_index) { return plan.rows(); });
             auto const stack = random_features<Real>({frames.size(), tokens, channels}, 3);
-            injector<host_features<Real>, Real> const inject(called_bank, KF, rows, settings);
-            injector<host_features<Real>, Real> const injected(graph_bank, KF, rows, settings);
+            injector<host_features<Real>, Real> const inject(called_bank, KF, plans, settings);
+            injector<host_features<Real>, Real> const injected(graph_bank, KF, plans, settings);
             CHECK(greatest_kept_difference(through_callback(module, stack, frames, inject),
                                            through_callback(module, stack, frames, injected)) == 0);
         }
@@ -250,21 +251,22 @@ TEST_SUITE("injection/feature_io") {
         feature_bank<host_features<Real>> graph_bank(1, 2);
         through_callback(module, f_KF, KF, recorder<host_features<Real>>(called_bank, always));
         through_graph(module, f_KF, KF, recorder<host_features<Real>>(graph_bank, always));
-        std::vector<random_plan<Real>> const plans{
+        std::vector<random_plan<Real>> const plan_of_frame{
             {tokens, KF.size(), 4}, {tokens, KF.size(), 5}, {tokens, KF.size(), 6}};
-        auto const rows = [&](site_index, frame_index frame) { return plans[frame.value].rows(); };
+        auto const plans =
+            plans_of<Real>(1, frames, [&](site_index, frame_index frame) { return plan_of_frame[frame.value].rows(); });
+        auto const alpha = [](site_index) { return Real(0.6); };
 
         std::vector<host_features<Real>> results;
         for (auto const pre : {true, false}) {
             for (auto const post : {true, false}) {
                 for (auto const keeps : {true, false}) {
-                    injection_settings<Real> settings;
+                    injection_settings settings;
                     settings.pre_attention = pre;
                     settings.post_attention = post;
                     settings.keeps_own_copy = keeps;
-                    settings.alpha = [](site_index) { return Real(0.6); };
-                    injector<host_features<Real>, Real> const called(called_bank, KF, rows, settings);
-                    injector<host_features<Real>, Real> const graphed(graph_bank, KF, rows, settings);
+                    injector<host_features<Real>, Real> const called(called_bank, KF, plans, settings, alpha);
+                    injector<host_features<Real>, Real> const graphed(graph_bank, KF, plans, settings, alpha);
                     auto const F = through_callback(module, f, frames, called);
                     CHECK(are_close(through_graph(module, f, frames, graphed), F));
                     results.push_back(F);
@@ -284,10 +286,10 @@ TEST_SUITE("injection/feature_io") {
         feature_bank<host_features<double>> bank(2, 2);
         record_features(recorder<host_features<double>>(bank, always), place, f_KF, F_KF);
         random_plan<double> const plan(tokens, KF.size(), 4);
-        injection_settings<double> settings;
+        injection_settings settings;
         settings.keeps_own_copy = false;
         injector<host_features<double>, double> const pass(
-            bank, KF, [&](site_index, frame_index) { return plan.rows(); }, settings);
+            bank, KF, plans_of<double>(1, frames, [&](site_index, frame_index) { return plan.rows(); }), settings);
         auto const in = inputs_at<host_features<double>, double>(pass, place, frames);
         REQUIRE(in.f_KF != nullptr);
         REQUIRE(in.F_KF != nullptr);
@@ -295,7 +297,8 @@ TEST_SUITE("injection/feature_io") {
         CHECK(in.F_KF->view().data() == F_KF.view().data());
         CHECK(in.left_out == std::vector<std::optional<std::size_t>>{std::nullopt, 1});
         REQUIRE(in.rows.size() == 2);
-        CHECK(in.rows[1].sources.data() == plan.sources.data());
+        CHECK(in.rows[1].sources.data() == pass.rows_at(place.site, frames)[1].sources.data());
+        CHECK(std::equal(plan.sources.begin(), plan.sources.end(), in.rows[1].sources.begin()));
         CHECK(in.alpha == 0.7);
         CHECK_FALSE(in.attends_to_stack);
         CHECK_FALSE(in.is_recorded);
@@ -311,8 +314,7 @@ TEST_SUITE("injection/feature_io") {
         auto const f_KF = random_features<double>({KF.size(), tokens, channels}, 2);
         feature_bank<host_features<double>> bank(1, 2);
         through_callback(module, f_KF, KF, recorder<host_features<double>>(bank, always));
-        injector<host_features<double>, double> const pass(
-            bank, KF, [](site_index, frame_index) { return sparse_rows<double>{}; }, {});
+        injector<host_features<double>, double> const pass(bank, KF, {});
         CHECK_THROWS_WITH_AS((inputs_at<host_features<double>, double>(pass, place, frames)),
                              "injector: f_KF is missing, expected keyframes recorded by record_features", value_error);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // [GR alg. 1: Phi(z^i, D^i, c, f_KF, F_bar^i)] The injected pass against equations 1, 2, 5 and 6 written down plainly.
 #include <genrender/injection/injector.hpp>
+#include "../support/plans_of.hpp"
 
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/core/parallel.hpp>
@@ -54,9 +55,15 @@ TEST_SUITE("injection/injector") {
             return plans[8 * site.value + frame.value];
         }
 
-        injector<host_features<Real>, Real> inject(injection_settings<Real> settings = {}) const {
-            return {bank, KF, [this](site_index site, frame_index frame) { return plan(site, frame).rows(); },
-                    settings};
+        blend_plans<Real> planned() const {
+            std::vector<frame_index> const all{{0}, {1}, {2}, {3}, {4}, {5}, {6}, {7}};
+            return plans_of<Real>(3, all, [this](site_index s, frame_index i) { return plan(s, i).rows(); });
+        }
+        injector<host_features<Real>, Real> inject(injection_settings settings = {}) const {
+            return {bank, KF, planned(), settings};
+        }
+        injector<host_features<Real>, Real> inject(std::function<Real(site_index)> alpha) const {
+            return {bank, KF, planned(), {}, std::move(alpha)};
         }
         call_of<Real> call(attention_place place) const { return {place, frames, f, module}; }
 
@@ -95,7 +102,7 @@ TEST_SUITE("injection/injector") {
 
     TEST_CASE_TEMPLATE("[GR eq. 5] a keyframe without its own copy joins the others alone", Real, float, double) {
         recorded_world<Real> const world;
-        injection_settings<Real> settings;
+        injection_settings settings;
         settings.keeps_own_copy = false;
         auto const inject = world.inject(settings);
         auto call = world.call(taken);
@@ -113,7 +120,7 @@ TEST_SUITE("injection/injector") {
 
     TEST_CASE("[GR eq. 5] without pre-attention injection a frame attends to itself alone") {
         recorded_world<double> const world;
-        injection_settings<double> settings;
+        injection_settings settings;
         settings.pre_attention = false;
         auto const inject = world.inject(settings);
         auto call = world.call(taken);
@@ -126,28 +133,20 @@ TEST_SUITE("injection/injector") {
 
     TEST_CASE("[GR eq. 6] without post-attention injection nothing is mixed and no plan is asked for") {
         recorded_world<double> const world;
-        injection_settings<double> settings;
+        injection_settings settings;
         settings.post_attention = false;
-        bool is_asked = false;
-        injector<host_features<double>, double> const inject(
-            world.bank, KF,
-            [&](site_index, frame_index) {
-                is_asked = true;
-                return sparse_rows<double>{};
-            },
-            settings);
+        injector<host_features<double>, double> const inject(world.bank, KF, {}, settings); // no plans at all
         auto call = world.call(taken);
         auto const F = inject(call);
         for (std::size_t i = 0; i < frames.size(); ++i) {
             CHECK(greatest_difference(F, i, world.expected(i, all_keyframes, 0)) < 1e-13);
         }
-        CHECK_FALSE(is_asked);
         CHECK(inject.blended_features(taken) == nullptr);
     }
 
     TEST_CASE("without both the network stays as it is") {
         recorded_world<double> const world;
-        injection_settings<double> settings;
+        injection_settings settings;
         settings.pre_attention = false;
         settings.post_attention = false;
         auto call = world.call(taken);
@@ -185,18 +184,15 @@ TEST_SUITE("injection/injector") {
 
     TEST_CASE("[GR eq. 6] alpha is the one of the site and 0 and 1 are exact") {
         recorded_world<double> const world;
-        injection_settings<double> settings;
-        settings.alpha = [](site_index site) { return site.value == 1 ? 0.25 : 0.9; };
         auto call = world.call(taken);
-        auto const F = world.inject(settings)(call);
+        auto const F = world.inject([](site_index site) { return site.value == 1 ? 0.25 : 0.9; })(call);
         CHECK(greatest_difference(F, 2, world.expected(2, all_keyframes, 0.25)) < 1e-13);
 
-        settings.alpha = [](site_index) { return 1.0; };
-        auto const F_bar = world.inject(settings)(call);
+        auto const F_bar = world.inject([](site_index) { return 1.0; })(call);
         CHECK(greatest_difference(F_bar, 2, world.expected(2, all_keyframes, 1)) < 1e-13);
 
-        settings.alpha = [](site_index) { return 0.0; };
-        auto const F_hat = world.inject(settings)(call);
+        auto const F_hat = world.inject([](site_index) { return 0.0; })(call);
+        injection_settings settings;
         settings.post_attention = false;
         CHECK(equal_bits(F_hat, world.inject(settings)(call)));
     }
@@ -248,8 +244,7 @@ TEST_SUITE("injection/injector") {
         feature_bank<host_features<double>> bank(3, 2);
         recorder<host_features<double>> const pass(bank, [](attention_place) { return true; });
         pass.record(taken, world.f_KF, world.F_KF);
-        injector<host_features<double>, double> const inject(
-            bank, KF, [&](site_index site, frame_index frame) { return world.plan(site, frame).rows(); }, {});
+        injector<host_features<double>, double> const inject(bank, KF, world.planned());
         auto call = world.call(taken);
         CHECK_THROWS_WITH_AS(inject(call), "injector: K_KF is missing, expected keyframes recorded by callbacks",
                              value_error);
@@ -288,10 +283,9 @@ TEST_SUITE("injection/injector") {
 
     TEST_CASE("a bank of another number of keyframes is refused in a sentence") {
         recorded_world<float> const world;
-        auto const rows = [](site_index, frame_index) { return sparse_rows<float>{}; };
         auto call = world.call(taken);
         std::vector<frame_index> const four{{6}, {1}, {4}, {5}};
-        injector<host_features<float>, float> const pass(world.bank, four, rows, {});
+        injector<host_features<float>, float> const pass(world.bank, four, world.planned());
         CHECK_THROWS_WITH_AS(pass(call), "pre_attention_sources: K_KF is [3, 13, 8], expected [4, 13, 8]", shape_error);
     }
 

@@ -239,11 +239,12 @@ TEST_SUITE("noise/surface_noise") {
         uv_maps const maps(1, pixels);
         noise_settings settings;
         settings.T = 64;
-        CHECK_THROWS_WITH_AS(noise_of(maps, 1, settings),
-                             "initial_noise: settings.T is 64, expected 0, since noise_reading::surface has no texture "
-                             "resolution",
-                             value_error);
-        settings.T = 0;
+        CHECK_THROWS_WITH_AS(
+            noise_of(maps, 1, settings),
+            "initial_noise: settings.T is 64, expected none, since noise_reading::surface has no texture "
+            "resolution",
+            value_error);
+        settings.T.reset();
         settings.background = background_noise::environment;
         CHECK_THROWS_WITH_AS(noise_of(maps, 1, settings),
                              "initial_noise: settings.background is environment, expected noise_reading::surface and "

@@ -28,6 +28,8 @@ TEST_SUITE("normalization/adain") {
 
     using mask_stack = stack<std::uint8_t, 3>;
 
+    constexpr auto as_the_paper = adain_statistics::mean_and_deviation;
+
     /// Frames of different means and deviations, and another background in each: all but a block of columns that moves.
     template <class Real>
     std::pair<stack<Real, 4>, mask_stack> world() {
@@ -110,7 +112,7 @@ TEST_SUITE("normalization/adain") {
     TEST_CASE_TEMPLATE("[GR sec. 3.4] every background ends with the statistics of the first", Real, float, double) {
         auto [z, background] = world<Real>();
         auto const first = background_of(z, background, 0);
-        CHECK(normalize_latents(z.view(), std::as_const(background).view()).empty());
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper}).empty());
         for (std::size_t i = 0; i < frames; ++i) {
             auto const own = background_of(z, background, i);
             for (std::size_t c = 0; c < channels; ++c) {
@@ -145,16 +147,16 @@ TEST_SUITE("normalization/adain") {
     TEST_CASE_TEMPLATE("[GR sec. 3.4] the first frame stays as it is to the bit", Real, float, double) {
         auto [z, background] = world<Real>();
         auto const before = z;
-        normalize_latents(z.view(), std::as_const(background).view());
+        normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper});
         CHECK(frame_is_equal(z, before, 0));
         CHECK_FALSE(frame_is_equal(z, before, 1));
     }
 
     TEST_CASE_TEMPLATE("[GR sec. 3.4] normalising twice is normalising once", Real, float, double) {
         auto [z, background] = world<Real>();
-        normalize_latents(z.view(), std::as_const(background).view());
+        normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper});
         auto const once = z;
-        normalize_latents(z.view(), std::as_const(background).view());
+        normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper});
         // But for the 1e-5 in the variances.
         CHECK(largest_difference(z, once) < 2e-4);
     }
@@ -162,7 +164,7 @@ TEST_SUITE("normalization/adain") {
     TEST_CASE("[GR sec. 3.4] all pixels of a frame are rescaled and its objects too") {
         auto [z, background] = world<double>();
         auto const before = z;
-        normalize_latents(z.view(), std::as_const(background).view());
+        normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper});
         for (std::size_t i = 1; i < frames; ++i) {
             auto const own = masked_statistics(before.view()[i], std::as_const(background).view()[i]);
             auto const first = masked_statistics(before.view()[0], std::as_const(background).view()[0]);
@@ -185,8 +187,8 @@ TEST_SUITE("normalization/adain") {
                 disturbed(i, c, 2, i + 1) += 1000;
             }
         }
-        normalize_latents(z.view(), std::as_const(background).view());
-        normalize_latents(disturbed.view(), std::as_const(background).view());
+        normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper});
+        normalize_latents(disturbed.view(), std::as_const(background).view(), {.statistics = as_the_paper});
         for (std::size_t i = 0; i < frames; ++i) {
             CHECK(disturbed(i, 0, 1, 7) == z(i, 0, 1, 7));
         }
@@ -196,7 +198,7 @@ TEST_SUITE("normalization/adain") {
         for (std::size_t i = 1; i < frames; ++i) {
             std::copy(background.data(), background.data() + grid.size(), one_mask.data() + i * grid.size());
         }
-        normalize_latents(with_one_mask.view(), std::as_const(one_mask).view());
+        normalize_latents(with_one_mask.view(), std::as_const(one_mask).view(), {.statistics = as_the_paper});
         CHECK(std::abs(with_one_mask(3, 0, 1, 7) - z(3, 0, 1, 7)) > 1e-3);
     }
 
@@ -204,7 +206,8 @@ TEST_SUITE("normalization/adain") {
         auto [z, background] = world<Real>();
         fill(background, 2, 0);
         auto const before = z;
-        auto const skipped = normalize_latents(z.view(), std::as_const(background).view());
+        auto const skipped =
+            normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper});
         CHECK(skipped == std::vector<std::size_t>{2});
         CHECK(frame_is_equal(z, before, 2));
         CHECK_FALSE(frame_is_equal(z, before, 1));
@@ -216,7 +219,8 @@ TEST_SUITE("normalization/adain") {
         auto [z, background] = world<float>();
         fill(background, 0, 0);
         auto const before = z;
-        CHECK(normalize_latents(z.view(), std::as_const(background).view()) == std::vector<std::size_t>{0, 1, 2, 3});
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper}) ==
+              std::vector<std::size_t>{0, 1, 2, 3});
         CHECK(largest_difference(z, before) == 0);
     }
 
@@ -225,10 +229,12 @@ TEST_SUITE("normalization/adain") {
         fill(background, 1, 0);
         background(1, 3, 3) = 1;
         auto const before = z;
-        CHECK(normalize_latents(z.view(), std::as_const(background).view()) == std::vector<std::size_t>{1});
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper}) ==
+              std::vector<std::size_t>{1});
         CHECK(frame_is_equal(z, before, 1));
         // Even where the settings ask for less.
         adain_settings<float> settings;
+        settings.statistics = as_the_paper;
         settings.least_pixels = 0;
         CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings) == std::vector<std::size_t>{1});
         background(1, 3, 4) = 1;
@@ -239,6 +245,7 @@ TEST_SUITE("normalization/adain") {
     TEST_CASE("least_pixels counts the background of the frame and of the first") {
         auto [z, background] = world<double>();
         adain_settings<double> settings;
+        settings.statistics = as_the_paper;
         settings.least_pixels = 24;
         CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings).empty());
         background(2, 0, 0) = 0;
@@ -252,6 +259,7 @@ TEST_SUITE("normalization/adain") {
         auto [z, background] = world<Real>();
         fill(background, 2, 0);
         adain_settings<Real> settings;
+        settings.statistics = as_the_paper;
         settings.fallback = without_background::all_pixels;
         mask_stack everywhere({frames, grid.height, grid.width});
         std::fill(everywhere.data(), everywhere.data() + everywhere.size(), std::uint8_t{1});
@@ -273,9 +281,10 @@ TEST_SUITE("normalization/adain") {
         auto everywhere = background;
         std::fill(everywhere.data(), everywhere.data() + everywhere.size(), std::uint8_t{1});
         auto expected = z;
-        normalize_latents(expected.view(), std::as_const(everywhere).view());
+        normalize_latents(expected.view(), std::as_const(everywhere).view(), {.statistics = as_the_paper});
         fill(background, 0, 0);
         adain_settings<double> settings;
+        settings.statistics = as_the_paper;
         settings.fallback = without_background::all_pixels;
         CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings).empty());
         CHECK(largest_difference(z, expected) == 0);
@@ -292,7 +301,7 @@ TEST_SUITE("normalization/adain") {
         }
         auto const first = background_of(z, background, 0);
         auto const before = z;
-        CHECK(normalize_latents(z.view(), std::as_const(background).view()).empty());
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper}).empty());
         CHECK(is_finite(z));
         CHECK(z(1, 0, 5, 7) == doctest::Approx(static_cast<double>(first.mean[0])).epsilon(2e-5));
         CHECK(z(1, 0, 5, 7) == z(1, 0, 0, 0));
@@ -306,7 +315,7 @@ TEST_SUITE("normalization/adain") {
         for (std::size_t e = 0; e < channels * grid.size(); ++e) {
             z.data()[e] = 2;
         }
-        normalize_latents(z.view(), std::as_const(background).view());
+        normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper});
         CHECK(is_finite(z));
         auto const own = background_of(z, background, 3);
         CHECK(own.mean[1] == doctest::Approx(2));
@@ -318,8 +327,10 @@ TEST_SUITE("normalization/adain") {
         z(1, 0, 0, 0) = 5;
         mask_stack background({2, 1, 1});
         background(0, 0, 0) = background(1, 0, 0) = 1;
-        CHECK(normalize_latents(z.view(), std::as_const(background).view()) == std::vector<std::size_t>{0, 1});
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper}) ==
+              std::vector<std::size_t>{0, 1});
         adain_settings<float> settings;
+        settings.statistics = as_the_paper;
         settings.fallback = without_background::all_pixels;
         normalize_latents(z.view(), std::as_const(background).view(), settings);
         CHECK(z(1, 0, 0, 0) == 5);
@@ -330,7 +341,7 @@ TEST_SUITE("normalization/adain") {
         std::copy(z.data(), z.data() + z.size() / frames, z.data() + z.size() / frames);
         std::copy(background.data(), background.data() + grid.size(), background.data() + grid.size());
         auto const before = z;
-        normalize_latents(z.view(), std::as_const(background).view());
+        normalize_latents(z.view(), std::as_const(background).view(), {.statistics = as_the_paper});
         auto const size = z.size() / frames;
         for (std::size_t e = size; e < 2 * size; ++e) {
             CHECK(z.data()[e] == doctest::Approx(before.data()[e]).epsilon(1e-12));
@@ -340,19 +351,19 @@ TEST_SUITE("normalization/adain") {
     TEST_CASE("no frame and one frame are no work") {
         stack<float, 4> none({0, 3, 6, 8});
         mask_stack const no_mask({0, 6, 8});
-        CHECK(normalize_latents(none.view(), no_mask.view()).empty());
+        CHECK(normalize_latents(none.view(), no_mask.view(), {.statistics = as_the_paper}).empty());
         auto one = random_stack<float, 4>({1, 2, 3, 3}, 1);
         auto const before = one;
         mask_stack mask({1, 3, 3});
         std::fill(mask.data(), mask.data() + 9, std::uint8_t{1});
-        CHECK(normalize_latents(one.view(), std::as_const(mask).view()).empty());
+        CHECK(normalize_latents(one.view(), std::as_const(mask).view(), {.statistics = as_the_paper}).empty());
         CHECK(largest_difference(one, before) == 0);
     }
 
     TEST_CASE("shapes that do not fit are refused with a sentence") {
         stack<float, 4> z({2, 3, 4, 5});
         mask_stack const background({2, 5, 4});
-        CHECK_THROWS_WITH_AS(normalize_latents(z.view(), background.view()),
+        CHECK_THROWS_WITH_AS(normalize_latents(z.view(), background.view(), {.statistics = as_the_paper}),
                              "normalize_latents: background is [2, 5, 4], expected [2, 4, 5]", shape_error);
         channel_statistics<float> const three{{0, 0, 0}, {1, 1, 1}, 2};
         channel_statistics<float> const two{{0, 0}, {1, 1}, 2};

@@ -56,25 +56,24 @@ TEST_SUITE("pipeline/generative_rendering") {
     }
     TEST_CASE("without injection there are no keyframes") {
         auto settings = four_steps();
-        settings.pre_attention = false;
+        settings.injection.pre_attention = false;
         CHECK(has_keyframes(settings, 0));
-        settings.post_attention = false;
+        settings.injection.post_attention = false;
         CHECK(!has_keyframes(settings, 0));
-        settings.pre_attention = true;
+        settings.injection.pre_attention = true;
         CHECK(has_keyframes(settings, 0));
     }
     TEST_CASE("correspondences are for post-attention injection alone") {
         auto settings = four_steps();
         CHECK(generative_rendering{}.uses_correspondence(settings));
-        settings.post_attention = false;
+        settings.injection.post_attention = false;
         CHECK(!generative_rendering{}.uses_correspondence(settings));
     }
     TEST_CASE("[GR alg. 1] keys and values of keyframes are projected once per step and layer") {
         auto const maps = testing::random_scene(33, 5, {32, 32}, 3);
         testing::layered_denoiser<double> const phi;
         auto const settings = four_steps();
-        render_report report;
-        render(phi, to_uv_view(maps), settings, report);
+        render(phi, to_uv_view(maps), {.settings = settings});
         for (std::size_t site = 0; site < phi.weights.size(); ++site) {
             // 4 steps, 2 branches: 5 frames, and 2 keyframes that no frame projects again.
             CHECK(phi.weights[site].keys == 4 * 2 * (5 + 2));
@@ -88,7 +87,7 @@ TEST_SUITE("pipeline/generative_rendering") {
         settings.window_begin = settings.window_end = 0.5;
         CHECK_FALSE(generative_rendering{}.uses_correspondence(settings));
         settings.window_end = 1;
-        settings.post_attention = false;
+        settings.injection.post_attention = false;
         CHECK_FALSE(generative_rendering{}.uses_correspondence(settings));
     }
     TEST_CASE("features kept in 16 bits change the frames by little") {
@@ -98,9 +97,8 @@ TEST_SUITE("pipeline/generative_rendering") {
             render_settings<float> settings;
             settings.steps = 3;
             settings.keyframes.count = 2;
-            settings.feature_storage = storage;
-            render_report report;
-            return render(phi, to_uv_view(maps), settings, report);
+            settings.keyframe_storage = storage;
+            return render(phi, to_uv_view(maps), {.settings = settings}).z;
         };
         auto const exact = run(feature_storage::same);
         for (auto const& [storage, unit] :

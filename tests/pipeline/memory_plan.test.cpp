@@ -78,10 +78,9 @@ planned_and_measured compare(std::size_t frames, render_settings<float> const& s
     wide_denoiser const phi;
     auto run = describe_run(phi, to_uv_view(maps));
     run.network_bytes = bytes_of_a_call(phi, 2) - bytes_of_a_call(phi, 1);
-    run.call_bytes = bytes_of_a_call(phi, 1) - run.network_bytes;
-    render_report report;
+    run.call_bytes = bytes_of_a_call(phi, 1) - *run.network_bytes;
     return {plan_memory(run, settings),
-            counted_memory::peak_of([&] { render(phi, to_uv_view(maps), settings, report); })};
+            counted_memory::peak_of([&] { render(phi, to_uv_view(maps), {.settings = settings}); })};
 }
 
 } // namespace
@@ -93,20 +92,20 @@ TEST_SUITE("pipeline/memory_plan") {
         auto const plan = plan_memory(run, settings);
         CHECK(plan.bytes.bank == 3 * 3 * 60 * 2 * sizeof(float)); // K, V and F of 3 keyframes, 2 branches
         CHECK(plan.bytes.keyframe_latents == 2 * 3 * 96 * sizeof(float));
-        CHECK(plan.bytes.latents == 2 * 20 * 96 * sizeof(float)); // z and x0
+        CHECK(plan.bytes.latents == 3 * 20 * 96 * sizeof(float)); // z, x0 and the result
         CHECK(plan.bytes.background == 20 * 24);
         CHECK(plan.bytes.maps == 20 * 384 * 13);
         CHECK(plan.bytes.network == 3 * (5 * 120 - 3 * 60) * sizeof(float)); // f, Q, K, V, F but for what is kept
         CHECK(plan.bytes.residuals == 0);
         CHECK(plan.bytes.peak > plan.bytes.latents + plan.bytes.bank + plan.bytes.correspondence);
-        settings.feature_storage = feature_storage::f16;
+        settings.keyframe_storage = feature_storage::f16;
         CHECK(2 * plan_memory(run, settings).bytes.bank == plan.bytes.bank);
         run.residual_bytes = 1000;
         CHECK(plan_memory(run, settings).bytes.residuals == 3000);
         settings.reuses_keyframes = false;
         CHECK(plan_memory(run, settings).bytes.residuals == 0);
         settings.sampler = sampler_kind::heun;
-        CHECK(plan_memory(run, settings).bytes.latents == 2 * plan.bytes.latents);
+        CHECK(plan_memory(run, settings).bytes.latents == 5 * 20 * 96 * sizeof(float)); // Heun's z and x0 there, too
         // Two steps draw six keyframes or fewer; their matches with 20 frames fit into one chunk.
         CHECK(plan.bytes.correspondence == footprint_map<2>::expected_bytes(20, 6));
         CHECK(plan.bytes.matching > match_cache::chunk_bytes);
@@ -129,9 +128,9 @@ TEST_SUITE("pipeline/memory_plan") {
         CHECK(plan.work.denoised_frames == frames_to_denoise(settings, 20));
         CHECK(plan.work.noise_values == 20 * 96);
         CHECK(plan.work.mixed_bytes == 4 * 20 * 60.0 * 4 * 5);
-        settings.keeps_own_copy = false; // keyframes among the frames leave a block out
+        settings.injection.keeps_own_copy = false; // keyframes among the frames leave a block out
         CHECK(plan_memory(run, settings).work.attention_flops == plan.work.attention_flops - 4 * 3 * inner);
-        settings.pre_attention = false;
+        settings.injection.pre_attention = false;
         CHECK(plan_memory(run, settings).work.attention_flops == 4 * 23 * (outer + inner));
         settings.window_end = 0;
         auto const plain = plan_memory(run, settings);
@@ -146,10 +145,9 @@ TEST_SUITE("pipeline/memory_plan") {
             for (auto const keeps_own_copy : {true, false}) {
                 auto settings = two_steps();
                 settings.sampler = method;
-                settings.keeps_own_copy = keeps_own_copy;
+                settings.injection.keeps_own_copy = keeps_own_copy;
                 phi.attention_flops = 0;
-                render_report report;
-                render(phi, to_uv_view(maps), settings, report);
+                render(phi, to_uv_view(maps), {.settings = settings});
                 auto const plan = plan_memory(describe_run(phi, to_uv_view(maps)), settings);
                 CHECK(plan.work.attention_flops == static_cast<double>(phi.attention_flops));
             }
@@ -176,7 +174,7 @@ TEST_SUITE("pipeline/memory_plan") {
             auto const grown = static_cast<double>(many.measured) - static_cast<double>(few.measured);
             CHECK(grown < 1.1 * (growing(many.plan.bytes) - growing(few.plan.bytes)));
         }
-        settings.feature_storage = feature_storage::bf16;
+        settings.keyframe_storage = feature_storage::bf16;
         CHECK(compare(24, settings).error() < 0.05);
         settings = two_steps();
         settings.window_end = 0;

@@ -38,8 +38,7 @@ TEST_SUITE("pipeline/render") {
 
     template <class Phi>
     latents<double> run(Phi const& phi, render_settings<double> const& settings, std::size_t threads = 1) {
-        render_report report;
-        return render(phi, to_uv_view(scene()), settings, report, {}, threaded_loop(threads));
+        return render(phi, to_uv_view(scene()), {.settings = settings, .loop = threaded_loop(threads)}).z;
     }
 
     double difference(latents<double> const& a, latents<double> const& b) {
@@ -66,8 +65,7 @@ TEST_SUITE("pipeline/render") {
         for (auto const& [method, bound] : {std::pair(sampler_kind::euler, 0.05), std::pair(sampler_kind::heun, 0.005),
                                             std::pair(sampler_kind::dpmpp_2m, 0.005)}) {
             settings.sampler = method;
-            render_report report;
-            auto const z = render(phi, to_uv_view(scene()), settings, report);
+            auto const z = render(phi, to_uv_view(scene()), {.settings = settings}).z;
             double worst = 0;
             for (std::size_t e = 0; e < z.size(); ++e) {
                 auto const exact = phi.mean + (z_T.data()[e] - phi.mean) * shrink;
@@ -100,21 +98,21 @@ TEST_SUITE("pipeline/render") {
             change(other);
             return run(phi, other);
         };
-        auto const no_post = changed([](auto& s) { s.post_attention = false; });
+        auto const no_post = changed([](auto& s) { s.injection.post_attention = false; });
         CHECK(difference(full, no_post) > 1e-4);
         CHECK(difference(no_post, changed([](auto& s) {
                              s.alpha = [](std::size_t, attention_site const&) { return 0.0; };
                          })) == 0);
-        auto const no_pre = changed([](auto& s) { s.pre_attention = false; });
+        auto const no_pre = changed([](auto& s) { s.injection.pre_attention = false; });
         CHECK(difference(full, no_pre) > 1e-4);
-        auto const neither = changed([](auto& s) { s.pre_attention = s.post_attention = false; });
+        auto const neither = changed([](auto& s) { s.injection.pre_attention = s.injection.post_attention = false; });
         CHECK(difference(neither, changed([](auto& s) { s.window_end = 0; })) == 0);
         CHECK(difference(full, changed([](auto& s) { s.window_end = 0.5; })) > 1e-6);
         CHECK(difference(full, changed([](auto& s) { s.normalization.enabled = false; })) > 1e-6);
         CHECK(difference(full, changed([](auto& s) { s.normalization.window_begin = s.normalization.window_end; })) ==
               doctest::Approx(difference(full, changed([](auto& s) { s.normalization.enabled = false; }))));
         CHECK(difference(full, changed([](auto& s) { s.normalization.on_noisy_latents = true; })) > 1e-6);
-        CHECK(difference(full, changed([](auto& s) { s.keeps_own_copy = false; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.injection.keeps_own_copy = false; })) > 1e-9);
         CHECK(difference(full, changed([](auto& s) { s.first_fill_share = 1; })) > 1e-9);
         auto const by_texels = [](auto& s) { s.correspondence.kind = correspondence_kind::texel_grid; };
         CHECK(difference(full, changed(by_texels)) > 1e-9);
@@ -137,8 +135,8 @@ TEST_SUITE("pipeline/render") {
         auto const full = run(phi, few_steps());
         using settings_type = render_settings<double>;
         std::vector<std::pair<char const*, void (*)(settings_type&)>> const ablations{
-            {"no pre-attention", [](settings_type& s) { s.pre_attention = false; }},
-            {"no post-attention", [](settings_type& s) { s.post_attention = false; }},
+            {"no pre-attention", [](settings_type& s) { s.injection.pre_attention = false; }},
+            {"no post-attention", [](settings_type& s) { s.injection.post_attention = false; }},
             {"fixed noise", [](settings_type& s) { s.noise.kind = noise_kind::fixed; }},
             {"independent noise", [](settings_type& s) { s.noise.kind = noise_kind::independent; }},
             {"no latent normalisation", [](settings_type& s) { s.normalization.enabled = false; }}};
@@ -155,13 +153,22 @@ TEST_SUITE("pipeline/render") {
     }
     TEST_CASE("the default method may be named") {
         auto const phi = with_attention();
-        render_report report;
-        auto const z = render(generative_rendering{}, phi, to_uv_view(scene()), few_steps(), report);
+        auto const z = render<generative_rendering>(phi, to_uv_view(scene()), {.settings = few_steps()}).z;
         CHECK(difference(z, run(phi, few_steps())) == 0);
         auto const make_map = [](grid_extents grid) { return footprint_map(to_uv_view(scene()), grid); };
-        CHECK(difference(z, render(generative_rendering{}, phi, to_uv_view(scene()), make_map, few_steps(), report)) ==
-              0);
-        CHECK(difference(z, render(phi, to_uv_view(scene()), make_map, few_steps(), report)) == 0);
+        CHECK(difference(z, render(phi, to_uv_view(scene()), {.settings = few_steps(), .method = {}}).z) == 0);
+        using map_type = footprint_map<2>;
+        auto const own = render<generative_rendering, map_type>(phi, to_uv_view(scene()),
+                                                                {.settings = few_steps(), .make_map = make_map});
+        CHECK(difference(z, own.z) == 0);
+    }
+    TEST_CASE("a map that is named wants a function that makes it") {
+        auto const run_without = [] {
+            render<generative_rendering, footprint_map<2>>(with_attention(), to_uv_view(scene()),
+                                                           {.settings = few_steps()});
+        };
+        CHECK_THROWS_WITH_AS(run_without(),
+                             "render: make_map is empty, expected a function that compiles the named map", value_error);
     }
     TEST_CASE(
         "UV noise alone makes corresponding pixels of the analytic denoiser agree better than independent noise") {
@@ -171,8 +178,7 @@ TEST_SUITE("pipeline/render") {
         auto const error = [&](noise_kind kind) {
             auto settings = few_steps();
             settings.noise.kind = kind;
-            render_report report;
-            auto const z = render(phi, to_uv_view(maps), settings, report);
+            auto const z = render(phi, to_uv_view(maps), {.settings = settings}).z;
             return *correspondence_error(to_view(z), pixels, 5);
         };
         auto const uv = error(noise_kind::uv);
@@ -183,11 +189,10 @@ TEST_SUITE("pipeline/render") {
     TEST_CASE("the observer sees every frame and its estimate runs out") {
         auto const phi = with_attention();
         auto const settings = few_steps();
-        render_report report;
         std::size_t calls = 0;
         std::size_t keyframe_passes = 0;
         progress last;
-        render(phi, to_uv_view(scene()), settings, report, [&](progress const& state) {
+        auto const observe = [&](progress const& state) {
             ++calls;
             keyframe_passes += state.pass == render_pass::keyframes ? 1U : 0U;
             CHECK(state.steps == 4);
@@ -195,14 +200,18 @@ TEST_SUITE("pipeline/render") {
             CHECK(state.elapsed_seconds >= last.elapsed_seconds);
             last = state;
             return true;
-        });
+        };
+        auto const [z, report, is_cancelled] =
+            render(phi, to_uv_view(scene()), {.settings = settings, .observer = observe});
+        CHECK(difference(z, run(phi, settings)) == 0);
+        CHECK_FALSE(is_cancelled);
         CHECK(calls == 4 * (1 + 6));
         CHECK(keyframe_passes == 4);
         CHECK(last.step == 3);
         CHECK(last.frames_done == 6);
         CHECK(last.remaining_seconds == 0);
-        CHECK(report.denoiser_seconds() > 0);
-        CHECK(report.library_seconds() > 0);
+        CHECK(report.denoiser_seconds > 0);
+        CHECK(report.library_seconds > 0);
     }
     TEST_CASE("the estimate runs out for every sampler and window") {
         auto const phi = with_attention();
@@ -211,13 +220,13 @@ TEST_SUITE("pipeline/render") {
                 auto settings = few_steps();
                 settings.sampler = method;
                 settings.window_end = end;
-                render_report report;
                 progress last;
-                render(phi, to_uv_view(scene()), settings, report, [&](progress const& state) {
+                auto const observe = [&](progress const& state) {
                     CHECK(state.remaining_seconds >= 0);
                     last = state;
                     return true;
-                });
+                };
+                render(phi, to_uv_view(scene()), {.settings = settings, .observer = observe});
                 CHECK(last.remaining_seconds == 0);
                 CHECK(last.frames_done == 6);
             }
@@ -231,14 +240,61 @@ TEST_SUITE("pipeline/render") {
         settings.window_begin = 0.5; // Steps 2 and 3 have keyframes, each evaluated twice.
         CHECK(frames_to_denoise(settings, 6) == 7 * 6 + 4 * 3);
     }
-    TEST_CASE("the observer can end the run") {
+    TEST_CASE("a run that its observer ends gives its report and the latents of its last whole step") {
         auto const phi = with_attention();
-        render_report report;
+        auto settings = few_steps();
+        settings.normalization.enabled = false;
         std::size_t calls = 0;
-        CHECK_THROWS_WITH_AS(render(
-                                 phi, to_uv_view(scene()), few_steps(), report,
-                                 [&](progress const&) { return ++calls < 9; }, threaded_loop(2)),
-                             "render: cancelled by its observer in step 2 of 4", cancelled);
+        std::size_t most = 1;
+        auto const end_early = [&](progress const&) { return ++calls < most; };
+        auto const noise = render(phi, to_uv_view(scene()), {.settings = settings, .observer = end_early});
+        CHECK(noise.is_cancelled);
+        CHECK(calls == 1);
+        calls = 0;
+        most = 9; // A step has 1 + 6 calls.
+        auto const first =
+            render(phi, to_uv_view(scene()), {.settings = settings, .observer = end_early, .loop = threaded_loop(2)});
+        CHECK(first.is_cancelled);
+        CHECK(calls == 9);
+        CHECK(first.report.coverage.at({8, 8}).covered > 0);
+        CHECK(first.report.denoiser_seconds > 0);
+
+        // The noise, and the step after it by hand.
+        auto z = latents<double>::from_shape({6, 3, 8, 8});
+        std::vector<frame_index> const frames{{0}, {1}, {2}, {3}, {4}, {5}};
+        initial_noise(to_view(z), to_uv_view(scene()), frames, settings.noise);
+        z *= settings.sigma_max;
+        CHECK(difference(noise.z, z) == 0);
+        auto const sigmas =
+            karras_schedule<double>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
+        correspondence_set<chosen_correspondence<2>> maps;
+        maps.add({8, 8}, [](grid_extents grid) {
+            return chosen_correspondence<2>(to_uv_view(scene()), grid, correspondence_settings{});
+        });
+        auto const background = background_mask(to_uv_view(scene()), {8, 8});
+        progress_meter meter(4, 100, {});
+        render_report report;
+        report_writer writer(report);
+        sequence_denoiser const D(phi, maps, to_view(background), std::span<double const>(sigmas), settings, {}, meter,
+                                  writer);
+        CHECK(difference(first.z, euler_step(z, D(z, sigmas[0]), sigmas[0], sigmas[1])) < 1e-12);
+    }
+    TEST_CASE("cancelled before a step of any sampler ends the latents are those of the step before") {
+        auto const phi = with_attention();
+        for (auto const sampler : {sampler_kind::heun, sampler_kind::dpmpp_2m}) {
+            auto settings = few_steps();
+            settings.sampler = sampler;
+            std::size_t steps_seen = 0;
+            auto const whole = run(phi, settings);
+            auto const late =
+                render(phi, to_uv_view(scene()), {.settings = settings, .observer = [&](progress const& now) {
+                                                      steps_seen = now.step;
+                                                      return now.step < 3;
+                                                  }});
+            CHECK(late.is_cancelled);
+            CHECK(steps_seen == 3);
+            CHECK(difference(late.z, whole) > 1e-9);
+        }
     }
     TEST_CASE("geometry that fills the frame skips latent normalisation and says so") {
         uv_maps maps(2, {16, 16});
@@ -249,27 +305,24 @@ TEST_SUITE("pipeline/render") {
         testing::analytic_denoiser<double> const phi{.grid = {8, 8}};
         auto settings = few_steps();
         settings.keyframes.count = 1;
-        render_report report;
-        auto const z = render(phi, to_uv_view(maps), settings, report);
-        CHECK(report.skipped_frames() == std::set<std::size_t>{0, 1});
+        auto const [z, report, is_cancelled] = render(phi, to_uv_view(maps), {.settings = settings});
+        CHECK(report.skipped_frames == std::set<std::size_t>{0, 1});
         CHECK(std::isfinite(z(1, 0, 0, 0)));
     }
     TEST_CASE("a scene that shows nothing has no coverage and still renders") {
         uv_maps const maps(3, {16, 16});
         testing::analytic_denoiser<double> const phi{.grid = {8, 8}, .attention = 0.5};
-        render_report report;
-        auto const z = render(phi, to_uv_view(maps), few_steps(), report);
-        CHECK(report.coverage().at({8, 8}).on_objects == 0);
-        CHECK(report.coverage().at({8, 8}).share() == 0);
+        auto const [z, report, is_cancelled] = render(phi, to_uv_view(maps), {.settings = few_steps()});
+        CHECK(report.coverage.at({8, 8}).on_objects == 0);
+        CHECK(report.coverage.at({8, 8}).share() == 0);
         CHECK(std::isfinite(z(2, 2, 7, 7)));
     }
     TEST_CASE("arguments that no run could honour are refused by name before anything runs") {
         auto const phi = with_attention();
-        render_report report;
         auto const refuses = [&](auto&& change, char const* text) {
             auto settings = few_steps();
             change(settings);
-            CHECK_THROWS_WITH_AS(render(phi, to_uv_view(scene()), settings, report), text, value_error);
+            CHECK_THROWS_WITH_AS(render(phi, to_uv_view(scene()), {.settings = settings}), text, value_error);
         };
         refuses([](auto& s) { s.keyframes.count = 7; },
                 "draw_keyframes: count is 7, expected 1 to the animation's 6 frames");
@@ -291,14 +344,14 @@ TEST_SUITE("pipeline/render") {
         auto broken = scene();
         broken.coverage(0, 16, 16) = 1;
         broken.uv(0, 16, 16, 1) = std::numeric_limits<float>::infinity();
-        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(broken), few_steps(), report),
+        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(broken), {.settings = few_steps()}),
                              "render: UV of frame 0 at row 16 column 16 is inf, expected finite texture coordinates",
                              value_error);
         uv_maps const none(0, {32, 32});
-        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(none), few_steps(), report),
+        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(none), {.settings = few_steps()}),
                              "render: UV.frame_count() is 0, expected at least one frame", value_error);
         uv_maps const odd(3, {30, 32});
-        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(odd), few_steps(), report),
+        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(odd), {.settings = few_steps()}),
                              "initial_noise: grid is [8, 8], expected extents that divide the maps' [30, 32]",
                              value_error);
     }

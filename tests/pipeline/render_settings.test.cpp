@@ -15,10 +15,11 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(settings.noise.kind == noise_kind::uv);
         CHECK(settings.noise.background == background_noise::fixed);
         CHECK(settings.keyframes.drawing == keyframe_drawing::uniform);
-        CHECK(settings.alpha(3, {}) == Real(0.7));
+        CHECK(settings.alpha(3, {}) == Real(paper_alpha));
         CHECK(settings.first_fill_share == Real(0.5));
-        CHECK(settings.keeps_own_copy);
+        CHECK(settings.injection.keeps_own_copy);
         CHECK(!settings.normalization.on_noisy_latents);
+        CHECK(settings.normalization.statistics == adain_statistics::mean); // the one default that is not the paper's
     }
     TEST_CASE("a window holds its first step and not its last") {
         CHECK(is_in_window(0, 4, 0.0, 1.0));

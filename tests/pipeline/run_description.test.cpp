@@ -44,7 +44,7 @@ TEST_SUITE("pipeline/run_description") {
         CHECK(run.map_dimensions == 2);
         CHECK(run.surface_pixels == std::vector<std::size_t>{3, 2, 0, 1});
         CHECK(run.calls_at_once == 3);
-        CHECK(run.residual_bytes == 0);
+        CHECK_FALSE(run.residual_bytes.has_value());
     }
     TEST_CASE("a denoiser that lends says what that takes") {
         auto const maps = testing::drawn_maps({"a."});

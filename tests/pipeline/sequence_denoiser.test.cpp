@@ -34,6 +34,7 @@ TEST_SUITE("pipeline/sequence_denoiser") {
         sequential_loop loop;
         progress_meter meter{3, 1000, {}};
         render_report report;
+        report_writer writer{report};
 
         small_run() {
             settings.steps = 3;
@@ -53,7 +54,7 @@ TEST_SUITE("pipeline/sequence_denoiser") {
 
         latents<Real> estimate(latents<Real> const& z, Real sigma) {
             return sequence_denoiser(phi, grids, to_view(std::as_const(background)), std::span<Real const>(sigmas),
-                                     settings, loop, meter, report)(z, sigma);
+                                     settings, loop, meter, writer)(z, sigma);
         }
     };
 
@@ -90,7 +91,7 @@ TEST_SUITE("pipeline/sequence_denoiser") {
             MESSAGE("step ", step, ": greatest difference ", worst);
             CHECK(worst <= 1e-6);
         }
-        CHECK(run.report.coverage().at({8, 8}).share() > 0.3);
+        CHECK(run.report.coverage.at({8, 8}).share() > 0.3);
     }
     TEST_CASE("[GR alg. 1] alpha may depend on step and site and layers decide who takes part") {
         small_run<double> run;
@@ -152,7 +153,7 @@ TEST_SUITE("pipeline/sequence_denoiser") {
         auto const z = run.noise();
         CHECK_THROWS_WITH_AS(sequence_denoiser(phi, run.grids, to_view(std::as_const(run.background)),
                                                std::span<double const>(run.sigmas), run.settings, run.loop, run.meter,
-                                               run.report)(z, 3),
+                                               run.writer)(z, 3),
                              "sequence_denoiser: features of keyframes at site decoder.attn1 of branch 0 are missing, "
                              "expected the denoiser to run its processor there",
                              value_error);

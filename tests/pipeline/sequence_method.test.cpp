@@ -65,8 +65,7 @@ TEST_SUITE("pipeline/sequence_method") {
         auto const laws = testing::check_sequence_method_laws(middle_first{}, phi, to_uv_view(maps), settings);
         CHECK(laws.text() == "");
         settings.window_end = 0;
-        render_report report;
-        auto const alone = render(phi, to_uv_view(maps), settings, report);
+        auto const alone = render(phi, to_uv_view(maps), {.settings = settings}).z;
         CHECK(std::equal(laws.z.begin(), laws.z.end(), alone.begin()));
     }
 }

@@ -33,7 +33,8 @@ struct strip_run {
                              return true;
                          }};
     render_report report;
-    sequence_run<analytic_denoiser<double>, shifted_strip> run{&phi, &maps, &settings, loop, &meter, &report};
+    report_writer writer{report};
+    sequence_run<analytic_denoiser<double>, shifted_strip> run{&phi, &maps, &settings, loop, &meter, &writer};
     latents<double> z = latents<double>::from_shape({5, 3, 1, 4});
     latents<double> x0 = latents<double>::from_shape({5, 3, 1, 4});
     sequence_passes<analytic_denoiser<double>, shifted_strip> passes{run, x0, z, 0.5, 2};
@@ -83,7 +84,7 @@ TEST_SUITE("pipeline/sequence_passes") {
             CHECK(world.told.back().frames_done == 5);
             CHECK(world.told.back().pass == render_pass::frames);
             CHECK(world.told.back().step == 2);
-            CHECK(world.report.denoiser_seconds() > 0);
+            CHECK(world.report.denoiser_seconds > 0);
         }
     }
     TEST_CASE("in order means one call after the other from the first frame on") {
@@ -129,26 +130,26 @@ TEST_SUITE("pipeline/sequence_passes") {
         auto const apart = world.passes.record_keyframes(KF, false);
         CHECK(apart.find({{2}, 1})->F_KF->view()(0, 0, 0) != kept->F_KF->view()(0, 0, 0));
     }
-    TEST_CASE("plans are made once for each resolution and frame and live as long as the rows") {
+    TEST_CASE("plans are made once for each resolution and frame and serve all sites") {
         strip_run world;
         std::vector<frame_index> const frames{{1}, {4}};
         std::vector<frame_index> const KF{{0}};
         std::size_t made = 0;
-        auto const rows = world.passes.plan_rows(frames, [&](shifted_strip const& map, frame_index i) {
+        auto const plans = world.passes.make_plans(frames, [&](shifted_strip const& map, frame_index i) {
             ++made;
             return make_blend_plan<double>(map, KF, i);
         });
         CHECK(made == 2);
-        CHECK(rows({2}, {1}).sources.size() == 3); // points 1, 2, 3 of frame 1 are in frame 0
-        CHECK(rows({2}, {1}).sources[0] == 1);
-        CHECK(rows({0}, {4}).sources.empty());
+        CHECK(plans.rows({2}, {1}).sources.size() == 3); // points 1, 2, 3 of frame 1 are in frame 0
+        CHECK(plans.rows({2}, {1}).sources[0] == 1);
+        CHECK(plans.rows({0}, {4}).sources.empty());
         CHECK(made == 2);
     }
     TEST_CASE("coverage is counted of the tokens that show an object") {
         strip_run world;
-        world.passes.report_coverage(world.maps.at({1, 4}), {2}, 3);
-        CHECK(world.report.coverage().at({1, 4}).on_objects == 4);
-        CHECK(world.report.coverage().at({1, 4}).covered == 3);
+        world.passes.report_coverage({1, 4}, {2}, 3);
+        CHECK(world.report.coverage.at({1, 4}).on_objects == 4);
+        CHECK(world.report.coverage.at({1, 4}).covered == 3);
     }
     TEST_CASE("features that are missing are refused by site and branch") {
         strip_run world;

@@ -386,8 +386,7 @@ TEST_SUITE("reference/reference_network") {
             settings.steps = 3;
             settings.keyframes.count = 2;
             change(settings);
-            render_report report;
-            return render(phi, to_uv_view(maps), settings, report, {}, threaded_loop(2));
+            return render(phi, to_uv_view(maps), {.settings = settings, .loop = threaded_loop(2)}).z;
         };
         auto const as_it_is = [](auto&) {};
         auto const expected = run(bare, as_it_is);

@@ -60,6 +60,24 @@ TEST_SUITE("sampling/sampler") {
         }
     }
 
+    TEST_CASE("D is told its noise level where it asks for it, and gives the same") {
+        std::vector const sigmas{8.0, 3.0, 1.0, 0.0};
+        for (auto const sampler : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
+            std::vector<std::size_t> told(3);
+            auto const D = [&](double z, double sigma, std::size_t i) {
+                CHECK(sigma == sigmas.at(i));
+                ++told[i];
+                return gaussian_denoiser{}(z, sigma);
+            };
+            CHECK(sample(sampler, D, 9.0, sigmas) == sample(sampler, gaussian_denoiser{}, 9.0, sigmas));
+            for (std::size_t i = 0; i < 3; ++i) {
+                CHECK(told[i] == evaluations_at(sampler, i));
+            }
+        }
+        CHECK(evaluations_at(sampler_kind::heun, 0) == 1);
+        CHECK(evaluations_at(sampler_kind::heun, 1) == 2);
+        CHECK(evaluations_at(sampler_kind::dpmpp_2m, 1) == 1);
+    }
     TEST_CASE("what names no sampler and no step is refused") {
         auto const none = static_cast<sampler_kind>(7);
         CHECK_THROWS_WITH_AS(sample(none, gaussian_denoiser{}, 1.0, std::vector{1.0, 0.0}),

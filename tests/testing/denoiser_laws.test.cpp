@@ -60,8 +60,7 @@ TEST_SUITE("testing/denoiser_laws") {
         render_settings<float> settings;
         settings.steps = 2;
         settings.keyframes.count = 2;
-        render_report report;
-        auto const z = render(phi, to_uv_view(maps), settings, report);
+        auto const z = render(phi, to_uv_view(maps), {.settings = settings}).z;
         CHECK(std::all_of(z.begin(), z.end(), [](float x) { return is_finite(x); }));
     }
     TEST_CASE("a denoiser that can stop and lends keeps them") { CHECK(report_on(flaw::none).text() == ""); }

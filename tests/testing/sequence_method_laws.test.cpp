@@ -62,8 +62,8 @@ TEST_SUITE("testing/sequence_method_laws") {
                 passes.denoise_frames_alone();
             }
             if (made == fault::reports_by_frames_per_call) {
-                passes.plan_rows(std::vector<frame_index>{{0}}, [&](auto const& map, frame_index frame) {
-                    passes.report_coverage(map, frame, one_by_one ? 2 : 1);
+                passes.make_plans(std::vector<frame_index>{{0}}, [&](auto const& map, frame_index frame) {
+                    passes.report_coverage(map.grid(), frame, one_by_one ? 2 : 1);
                     return blend_plan<typename Passes::real_type>{};
                 });
             }

@@ -19,9 +19,9 @@ namespace genrender {
 /// Keys and values of one frame, as a part of what a query attends to: row `frame` of the stacks K and V.
 template <class Features>
 struct key_value_block {
-    Features const* K = nullptr;
-    Features const* V = nullptr;
-    std::size_t frame = 0;
+    Features const* K = nullptr; ///< keys, a stack [frames, tokens, channels]; not owned
+    Features const* V = nullptr; ///< values, of the same frames and tokens as K; not owned
+    std::size_t frame = 0;       ///< entry of the frame axis of both
 };
 
 /// What every frame of a stack attends to: one list of blocks a frame, read in order, as if their tokens stood in a
@@ -133,15 +133,23 @@ concept shaped_features = requires(Features const& x) {
 /// The least that an attention_call is, for checking processors; never run.
 template <class Features, class Real>
 struct attention_call_archetype {
-    using features_type = Features;
-    using real_type = Real;
+    using features_type = Features; ///< the handle of features
+    using real_type = Real;         ///< the type of the weights
+    /// Which site, which guidance branch.
     attention_place place() const;
+    /// Which frame of the animation each entry of the frame axis is.
     std::span<frame_index const> frames() const;
+    /// The input of the module.
     Features f() const;
+    /// W^Q f.
     Features query(Features const&) const;
+    /// W^K f.
     Features key(Features const&) const;
+    /// W^V f.
     Features value(Features const&) const;
+    /// F, each frame of the queries attending to its sources.
     Features attend(Features const&, attention_sources<Features> const&) const;
+    /// F of eq. 6, from F_hat, F_KF, the rows of a plan and alpha.
     Features mix(Features const&, Features const&, std::span<sparse_rows<Real> const>, Real) const;
 };
 

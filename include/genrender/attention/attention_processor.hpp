@@ -63,6 +63,7 @@ bool is_plain_at(Processor const& processor, attention_place place) {
 
 /// The least that an attention_processor is, for checking denoisers; never run.
 struct attention_processor_archetype {
+    /// F of one run of a module, in place of its own attention.
     template <attention_call Call>
     typename Call::features_type operator()(Call& call);
 };

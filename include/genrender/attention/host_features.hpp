@@ -23,6 +23,7 @@ namespace genrender {
 template <class Real>
 class host_features {
 public:
+    /// The type that the features are computed in, however they are stored.
     using value_type = Real;
 
     host_features() = default;
@@ -69,12 +70,20 @@ public:
         return std::visit(std::forward<Use>(use), view_);
     }
 
+    /// Extents of the features: frames, tokens, channels.
     std::array<std::size_t, 3> const& extents() const {
         return visit([](auto const& view) -> std::array<std::size_t, 3> const& { return view.extents(); });
     }
-    feature_storage storage() const { return static_cast<feature_storage>(view_.index()); }
+    /// The format that the elements are kept in.
+    feature_storage storage() const {
+        return std::holds_alternative<strided_view<Real, 3>>(view_)      ? feature_storage::same
+               : std::holds_alternative<strided_view<float16, 3>>(view_) ? feature_storage::f16
+                                                                         : feature_storage::bf16;
+    }
+    /// Whether the memory is an engine's, which must outlive the handle.
     bool is_borrowed() const { return owner_ == nullptr; }
 
+    /// The features, which are kept as Real.
     friend strided_view<Real, 3> to_view(host_features const& features) { return features.view(); }
 
     /// x kept in a format, as storable_features has it; of the other format of 16 bits by way of Real.

@@ -43,10 +43,12 @@ concept half_source = requires {
 template <class Real>
 class stored_view {
 public:
+    /// The type that keys and values are computed in, however they are stored.
     using value_type = Real;
 
     stored_view() = default;
 
+    /// Views elements [tokens, channels] of type Real or of a 16-bit type that half_bits knows; they are not owned.
     template <class Source>
         requires(!std::same_as<std::remove_cvref_t<Source>, stored_view> &&
                  (std::convertible_to<Source, strided_view<Real const, 2>> || detail::half_source<Source>))
@@ -65,9 +67,11 @@ public:
         return std::visit(std::forward<Visitor>(visitor), view_);
     }
 
+    /// Extents of both axes: tokens, channels.
     std::array<std::size_t, 2> extents() const {
         return visit([](auto const& view) { return view.extents(); });
     }
+    /// Extent of axis 0, tokens, or 1, channels.
     std::size_t extent(std::size_t axis) const { return extents()[axis]; }
 
     /// One element, converted.

@@ -16,8 +16,8 @@ template <class Real>
 render_settings<Real> per_frame(render_settings<Real> settings, noise_kind noise = noise_kind::independent) {
     settings.window_begin = 0;
     settings.window_end = 0;
-    settings.pre_attention = false;
-    settings.post_attention = false;
+    settings.injection.pre_attention = false;
+    settings.injection.post_attention = false;
     settings.normalization.enabled = false;
     settings.noise.kind = noise;
     return settings;

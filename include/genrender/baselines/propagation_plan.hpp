@@ -59,7 +59,7 @@ constexpr Real share_of_nearer(frame_index nearer, frame_index i, frame_index fa
 /// A plan that covers every token of one frame, and how many of them found a match by geometry.
 template <class Real>
 struct propagation_plan {
-    blend_plan<Real> plan;
+    blend_plan<Real> plan;   ///< the tokens that each token takes its output from, and their weights
     std::size_t matched = 0; ///< tokens that show an object whose point some neighbouring keyframe shows too
 };
 

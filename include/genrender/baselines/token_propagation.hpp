@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/plain_attention.hpp>
+#include <genrender/blending/blend_plans.hpp>
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
 
@@ -22,11 +23,10 @@ namespace genrender {
 template <class Features, class Real>
 class token_propagation {
 public:
-    /// Rows of the plan of a frame at a site, which cover every token; called for frames of the calls alone.
-    using rows_of = std::function<sparse_rows<Real>(site_index, frame_index)>;
-
-    /// Propagates from `bank`, which must outlive the processor.
-    token_propagation(feature_bank<Features> const& bank, rows_of rows) : bank_(&bank), rows_(std::move(rows)) {}
+    /// Propagates from `bank`, which must outlive the processor. `plans` hold those of the frames of its calls, which
+    /// cover every token.
+    token_propagation(feature_bank<Features> const& bank, blend_plans<Real> plans)
+        : bank_(&bank), plans_(std::move(plans)) {}
 
     /// F = rows * F_KF. Throws value_error if rows leave a token uncovered.
     template <attention_call Call>
@@ -50,12 +50,10 @@ public:
 
     /// The plan's rows of each frame at a site.
     std::vector<sparse_rows<Real>> rows_at(site_index site, std::span<frame_index const> frames) const {
-        std::vector<sparse_rows<Real>> rows;
-        rows.reserve(frames.size());
-        for (auto const frame : frames) {
-            rows.push_back(rows_(site, frame));
-            for (std::size_t t = 0; t < rows.back().row_count(); ++t) {
-                require_value(rows.back().is_covered(t), "token_propagation", "rows", "empty at a token",
+        auto rows = plans_.rows(site, frames);
+        for (auto const& one : rows) {
+            for (std::size_t t = 0; t < one.row_count(); ++t) {
+                require_value(one.is_covered(t), "token_propagation", "rows", "empty at a token",
                               "a plan that covers every token");
             }
         }
@@ -64,7 +62,7 @@ public:
 
 private:
     feature_bank<Features> const* bank_;
-    rows_of rows_;
+    blend_plans<Real> plans_;
 };
 
 /// The extra inputs of propagation for a static graph: eq. 6 with alpha = 1 replaces what its attention gave.

@@ -53,12 +53,12 @@ struct tokenflow {
         }
         auto const bank = passes.record_keyframes(KF, true);
         passes.denoise_frames([&](std::span<frame_index const> frames) {
-            auto const rows = passes.plan_rows(frames, [&](auto const& map, frame_index i) {
+            auto plans = passes.make_plans(frames, [&](auto const& map, frame_index i) {
                 auto propagation = make_propagation_plan<real_type>(map, KF, i);
-                passes.report_coverage(map, i, propagation.matched);
+                passes.report_coverage(map.grid(), i, propagation.matched);
                 return std::move(propagation.plan);
             });
-            return token_propagation<typename Passes::features_type, real_type>(bank, rows);
+            return token_propagation<typename Passes::features_type, real_type>(bank, std::move(plans));
         });
     }
 };

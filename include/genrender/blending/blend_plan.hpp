@@ -143,31 +143,31 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
     auto const tokens = map.grid().size();
     blend_plan<Real> plan;
     plan.offsets.reserve(tokens + 1);
-    struct speaker {
+    struct source_token {
         std::size_t keyframe; // its position in `keyframes`, in the drawn order
         token_index token;
-        double share; // of what the keyframe says, 1 unless several of its tokens speak
+        double share; // of the keyframe, 1 unless several of its tokens show the point
     };
-    std::vector<speaker> speakers;
-    std::vector<std::size_t> first_of; // the first speaker of each keyframe that sees the point
+    std::vector<source_token> sources;
+    std::vector<std::size_t> first_of; // the first source of each keyframe that sees the point
     std::vector<double> quality;
     for (std::uint32_t t = 0; t < tokens; ++t) {
         auto const point = map.point_at(i, {t});
         if (point) {
-            speakers.clear();
+            sources.clear();
             first_of.clear();
             quality.clear();
             double quality_sum = 0;
             for (std::size_t k = 0; k < keyframes.size(); ++k) {
-                auto const before = speakers.size();
+                auto const before = sources.size();
                 if constexpr (weighted_correspondence_map<Map>) {
                     map.visit_tokens(keyframes[k], *point, [&](token_index token, double share) {
-                        speakers.push_back({k, token, share});
+                        sources.push_back({k, token, share});
                     });
                 } else if (auto const token = map.token_at(keyframes[k], *point)) {
-                    speakers.push_back({k, *token, 1});
+                    sources.push_back({k, *token, 1});
                 }
-                if (speakers.size() > before) {
+                if (sources.size() > before) {
                     first_of.push_back(before);
                     quality.push_back(0);
                     if constexpr (graded_correspondence_map<Map>) {
@@ -179,14 +179,14 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
                 }
             }
             auto const seen = first_of.size();
-            first_of.push_back(speakers.size());
+            first_of.push_back(sources.size());
             for (std::size_t position = 0; position < seen; ++position) {
                 auto const weight = unified_weight<Real>(
                     position, average_weight_by_quality<Real>(quality[position], quality_sum, seen), first_fill_share);
                 for (auto s = first_of[position]; s < first_of[position + 1]; ++s) {
                     plan.sources.push_back(
-                        static_cast<std::uint32_t>(speakers[s].keyframe * tokens + speakers[s].token.value));
-                    plan.weights.push_back(weight * static_cast<Real>(speakers[s].share));
+                        static_cast<std::uint32_t>(sources[s].keyframe * tokens + sources[s].token.value));
+                    plan.weights.push_back(weight * static_cast<Real>(sources[s].share));
                 }
             }
         }

@@ -8,6 +8,12 @@
 // asks GENRENDER_TARGET_AVX512 and not __AVX512F__. No vector is an argument or a result of a function that is not
 // inlined. Functions of the standard library that a kernel calls have the unit's flags; they belong outside of loops.
 
+#if defined(__GNUC__)
+#define GENRENDER_ALWAYS_INLINE __attribute__((always_inline))
+#else
+#define GENRENDER_ALWAYS_INLINE
+#endif
+
 // The flags' own.
 #define GENRENDER_TARGET inline GENRENDER_UNIT::baseline
 #define GENRENDER_TARGET_NAME baseline
@@ -99,4 +105,5 @@
 #endif
 #endif
 
+#undef GENRENDER_ALWAYS_INLINE
 #undef GENRENDER_KERNELS

@@ -16,7 +16,8 @@ namespace genrender {
 
 /// A number of IEEE binary16 as its bits.
 struct float16_bits {
-    std::uint16_t bits = 0;
+    std::uint16_t bits = 0; ///< sign, 5 bits of exponent, 10 of fraction
+    /// Its value, exactly.
     template <std::floating_point Real>
     constexpr explicit operator Real() const {
         return static_cast<Real>(float_of_half(bits));
@@ -25,7 +26,8 @@ struct float16_bits {
 
 /// A number of bfloat16 as its bits.
 struct bfloat16_bits {
-    std::uint16_t bits = 0;
+    std::uint16_t bits = 0; ///< sign, 8 bits of exponent, 7 of fraction
+    /// Its value, exactly.
     template <std::floating_point Real>
     constexpr explicit operator Real() const {
         return static_cast<Real>(float_of_bfloat16(bits));
@@ -37,13 +39,15 @@ struct bfloat16_bits {
 /// core/linalg.hpp does so for Eigen's.
 template <class T>
 struct half_bits {};
+/// float16_bits has the format of binary16.
 template <>
 struct half_bits<float16_bits> {
-    using type = float16_bits;
+    using type = float16_bits; ///< binary16
 };
+/// bfloat16_bits has the format of bfloat16.
 template <>
 struct half_bits<bfloat16_bits> {
-    using type = bfloat16_bits;
+    using type = bfloat16_bits; ///< bfloat16
 };
 
 /// Types of 16 bits in which features may be stored besides the scalar that computes with them.

@@ -18,14 +18,17 @@ namespace genrender {
 /// The 16-bit formats in which features may be stored, IEEE binary16 and the upper half of a float; arithmetic is done
 /// in float or double.
 using float16 = Eigen::half;
+/// The upper half of a float.
 using bfloat16 = Eigen::bfloat16;
+/// Eigen's half has the format of binary16.
 template <>
 struct half_bits<float16> {
-    using type = float16_bits;
+    using type = float16_bits; ///< binary16
 };
+/// Eigen's bfloat16 has the format of bfloat16.
 template <>
 struct half_bits<bfloat16> {
-    using type = bfloat16_bits;
+    using type = bfloat16_bits; ///< bfloat16
 };
 
 /// A row-major matrix that owns its elements.

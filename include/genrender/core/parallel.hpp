@@ -22,6 +22,7 @@ namespace genrender {
 /// What a loop calls with each of its indices, whatever its type: a reference to a function that outlives the loop.
 class loop_body {
 public:
+    /// Refers to any function of an index, which has to outlive this.
     template <class Body>
         requires(!std::is_same_v<std::remove_cvref_t<Body>, loop_body> && std::is_invocable_v<Body&, std::size_t>)
     loop_body(Body&& body)
@@ -30,6 +31,7 @@ public:
               (*const_cast<function_type*>(static_cast<std::remove_const_t<function_type> const*>(function)))(i);
           }) {}
 
+    /// Runs the function for index i.
     void operator()(std::size_t i) const { call_(body_, i); }
 
 private:
@@ -56,6 +58,7 @@ concept parallel_loop = requires(Loop const& loop, std::size_t count, loop_body 
 
 /// The loop on the caller's thread, in order.
 struct sequential_loop {
+    /// Runs body(0), ..., body(count - 1).
     template <class Body>
     void operator()(std::size_t count, Body&& body) const {
         for (std::size_t i = 0; i < count; ++i) {
@@ -165,8 +168,11 @@ public:
         : threads_(threads > 0 ? threads : std::max<std::size_t>(1, std::thread::hardware_concurrency())),
           pool_(std::make_shared<detail::worker_pool>(threads_ - 1)) {}
 
+    /// Number of threads that share a loop, the caller's included.
     std::size_t threads() const { return threads_; }
 
+    /// Runs body(0), ..., body(count - 1), each once and in any order. What a body throws first ends the loop early and
+    /// is thrown here, once no body runs any more.
     void operator()(std::size_t count, loop_body body) const {
         auto const workers = std::min(threads_, count);
         if (workers <= 1) {
@@ -205,6 +211,7 @@ class any_loop {
 public:
     /// The loop on the caller's thread, in order.
     any_loop() = default;
+    /// The loop on the caller's thread, in order.
     any_loop(sequential_loop) {}
 
     /// A copy of `loop`.
@@ -216,6 +223,7 @@ public:
               (*static_cast<Loop const*>(run))(count, body);
           }) {}
 
+    /// Runs body(0), ..., body(count - 1) as the loop does that this was made of.
     void operator()(std::size_t count, loop_body body) const {
         if (run_ == nullptr) {
             sequential_loop{}(count, body);

@@ -15,15 +15,15 @@ namespace genrender {
 
 /// Which sequence of random numbers: values of different streams are independent for the same seed and address.
 enum class random_stream : std::uint32_t {
-    texture_noise = 1,
-    background_noise,
-    frame_noise,
-    keyframes,
-    weights,
-    test,
-    user, ///< for programs, which the library never draws from
-    surface_noise,
-    environment_noise
+    texture_noise = 1, ///< of texels
+    background_noise,  ///< one image for all frames
+    frame_noise,       ///< another image for each frame
+    keyframes,         ///< which frames are drawn
+    weights,           ///< of seeded networks
+    test,              ///< for tests
+    user,              ///< for programs, which the library never draws from
+    surface_noise,     ///< of the cells of surfaces
+    environment_noise  ///< of the cells of directions
 };
 
 namespace detail {

@@ -19,7 +19,9 @@ struct sparse_rows {
     std::span<std::uint32_t const> sources; ///< number of the source row, one per entry
     std::span<Real const> weights;          ///< one per entry
 
+    /// Number of rows, covered or not.
     std::size_t row_count() const { return offsets.empty() ? 0 : offsets.size() - 1; }
+    /// Whether a row has entries. `row` < row_count().
     bool is_covered(std::size_t row) const { return offsets[row] < offsets[row + 1]; }
 };
 

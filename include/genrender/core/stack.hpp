@@ -27,7 +27,7 @@ class stack {
                   "stack: elements are copied as bytes, so they must be trivially copyable");
 
 public:
-    using value_type = T;
+    using value_type = T; ///< type of an element
 
     /// Bytes of a cache line, at which a block begins.
     static constexpr std::size_t line_bytes = 64;
@@ -45,13 +45,16 @@ public:
     /// Allocates elements that hold anything until they are written.
     static stack uninitialized(std::array<std::size_t, Rank> const& extents) { return stack(extents, not_set{}); }
 
+    /// A copy with elements of its own.
     stack(stack const& other) : stack(other.extents_, not_set{}) {
         if (size() > 0) {
             std::memcpy(static_cast<void*>(data()), other.data(), size() * sizeof(T));
         }
     }
+    /// Takes the block along and leaves `other` without elements.
     stack(stack&& other) noexcept
         : extents_(std::exchange(other.extents_, {})), elements_(std::move(other.elements_)) {}
+    /// Takes the block of its argument along, which is a copy unless it was moved.
     stack& operator=(stack other) noexcept {
         extents_ = other.extents_;
         elements_ = std::move(other.elements_);
@@ -59,25 +62,36 @@ public:
     }
     ~stack() = default;
 
+    /// Extent of every axis.
     std::array<std::size_t, Rank> const& extents() const { return extents_; }
+    /// Extent of one axis, counted from 0.
     std::size_t extent(std::size_t axis) const { return extents_[axis]; }
+    /// Number of elements.
     std::size_t size() const { return view().size(); }
+    /// Elements in row-major order; the first lies at the beginning of a cache line.
     T* data() { return elements_.get(); }
+    /// Elements in row-major order.
     T const* data() const { return elements_.get(); }
 
+    /// View of all elements.
     strided_view<T, Rank> view() { return {data(), extents_}; }
+    /// View of all elements.
     strided_view<T const, Rank> view() const { return {data(), extents_}; }
 
+    /// Element at one index an axis, each below the axis' extent.
     template <class... Index>
     T& operator()(Index... index) {
         return view()(index...);
     }
+    /// Element at one index an axis, each below the axis' extent.
     template <class... Index>
     T const& operator()(Index... index) const {
         return view()(index...);
     }
 
+    /// View of all elements, found where views are asked for.
     friend strided_view<T, Rank> to_view(stack& owner) { return owner.view(); }
+    /// View of all elements, found where views are asked for.
     friend strided_view<T const, Rank> to_view(stack const& owner) { return owner.view(); }
 
 private:

@@ -45,9 +45,10 @@ class strided_view {
     static_assert(Rank >= 1, "strided_view: a view has at least one axis");
 
 public:
-    using element_type = T;
-    using value_type = std::remove_cv_t<T>;
-    using extents_type = std::array<std::size_t, Rank>;
+    using element_type = T;                             ///< type of an element, const if it may not be written
+    using value_type = std::remove_cv_t<T>;             ///< the same without const
+    using extents_type = std::array<std::size_t, Rank>; ///< elements along each axis
+    /// Elements of memory from one index to the next, along each axis; any sign.
     using strides_type = std::array<std::ptrdiff_t, Rank>;
 
     constexpr strided_view() = default;
@@ -78,10 +79,15 @@ public:
                  detail::view_of_tensor<strided_view>::template holds<Tensor>)
     constexpr strided_view(Tensor&& tensor) : strided_view(static_cast<strided_view>(to_view(tensor))) {}
 
+    /// The element at index 0 of each axis.
     constexpr T* data() const { return data_; }
+    /// Extent of every axis.
     constexpr extents_type const& extents() const { return extents_; }
+    /// Elements of memory from one index to the next, of every axis.
     constexpr strides_type const& strides() const { return strides_; }
+    /// Extent of one axis, counted from 0.
     constexpr std::size_t extent(std::size_t axis) const { return extents_[axis]; }
+    /// Elements of memory from one index to the next of one axis.
     constexpr std::ptrdiff_t stride(std::size_t axis) const { return strides_[axis]; }
 
     /// Number of elements.

@@ -21,12 +21,6 @@
 #include <immintrin.h>
 #endif
 
-#if defined(__GNUC__)
-#define GENRENDER_ALWAYS_INLINE __attribute__((always_inline))
-#else
-#define GENRENDER_ALWAYS_INLINE
-#endif
-
 namespace genrender::detail {
 
 /// Bytes that come from memory together.

@@ -31,9 +31,9 @@ enum class correspondence_kind : std::uint8_t {
 
 /// Which correspondence and how.
 struct correspondence_settings {
-    correspondence_kind kind = correspondence_kind::footprint;
-    footprint_map_settings footprint{}; ///< of correspondence_kind::footprint
-    texel_grid_settings texels{};       ///< of correspondence_kind::texel_grid
+    correspondence_kind kind = correspondence_kind::footprint; ///< which correspondence
+    footprint_map_settings footprint{};                        ///< of correspondence_kind::footprint
+    texel_grid_settings texels{};                              ///< of correspondence_kind::texel_grid
 };
 
 /// One of the library's correspondence maps behind one type: a model of weighted_ and graded_correspondence_map.
@@ -53,18 +53,22 @@ public:
                           any_loop const& loop = {})
         : map_(make(maps, grid, settings, loop)) {}
 
+    /// Number of frames.
     std::size_t frame_count() const {
         return std::visit([](auto const& map) { return map.frame_count(); }, map_);
     }
+    /// Height and width of the feature map.
     grid_extents grid() const {
         return std::visit([](auto const& map) { return map.grid(); }, map_);
     }
 
+    /// The surface point that the token shows; none on the background.
     std::optional<point_type> point_at(frame_index frame, token_index token) const {
         return std::visit([&](auto const& map) -> std::optional<point_type> { return map.point_at(frame, token); },
                           map_);
     }
 
+    /// The token of the frame that shows the point; none where it is hidden or out of view.
     std::optional<token_index> token_at(frame_index frame, point_type const& point) const {
         return std::visit([&](auto const& map) { return map.token_at(frame, own_point(map, point)); }, map_);
     }

@@ -7,13 +7,17 @@
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/core/error.hpp>
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace genrender {
 
-/// Correspondence maps by the extents of their feature grid, each compiled once for the whole animation.
+/// Correspondence maps by the extents of their feature grid, each compiled once for the whole animation, with the number
+/// of tokens of each frame that show an object.
 template <correspondence_map Map>
 class correspondence_set {
 public:
@@ -21,25 +25,45 @@ public:
     template <class Make>
     void add(grid_extents grid, Make&& make) {
         if (!maps_.contains(grid)) {
-            maps_.emplace(grid, make(grid));
+            auto const& map = maps_.emplace(grid, make(grid)).first->second;
+            auto& counts = tokens_on_objects_[grid];
+            for (std::uint32_t i = 0; i < map.frame_count(); ++i) {
+                std::size_t count = 0;
+                for (std::uint32_t t = 0; t < grid_extents(map.grid()).size(); ++t) {
+                    count += map.point_at({i}, {t}).has_value() ? 1U : 0U;
+                }
+                counts.push_back(count);
+            }
         }
     }
 
     /// The map of a grid. Throws value_error if none was added.
-    Map const& at(grid_extents grid) const {
-        auto const found = maps_.find(grid);
-        if (found == maps_.end()) {
-            throw value_error("correspondence_set: grid is " + extents_text({grid.height, grid.width}) +
-                              ", expected one of the " + std::to_string(maps_.size()) + " grids added");
-        }
-        return found->second;
+    Map const& at(grid_extents grid) const { return found(maps_, grid); }
+
+    /// Tokens of a frame at a grid that show an object. Throws value_error if the grid was not added or has no such
+    /// frame.
+    std::size_t tokens_on_objects(grid_extents grid, frame_index i) const {
+        auto const& counts = found(tokens_on_objects_, grid);
+        require_value(i.value < counts.size(), "correspondence_set", "i", i.value, "a frame of the map");
+        return counts[i.value];
     }
 
     auto begin() const { return maps_.begin(); }
     auto end() const { return maps_.end(); }
 
 private:
+    template <class Value>
+    static Value const& found(std::map<grid_extents, Value> const& values, grid_extents grid) {
+        auto const position = values.find(grid);
+        if (position == values.end()) {
+            throw value_error("correspondence_set: grid is " + extents_text({grid.height, grid.width}) +
+                              ", expected one of the " + std::to_string(values.size()) + " grids added");
+        }
+        return position->second;
+    }
+
     std::map<grid_extents, Map> maps_;
+    std::map<grid_extents, std::vector<std::size_t>> tokens_on_objects_; // by frame
 };
 
 } // namespace genrender

@@ -31,6 +31,7 @@ struct surface_footprint {
         return std::sqrt(std::max(0.0, aa * dd - ad * ad));
     }
 
+    /// a . b, in double precision.
     static double dot(std::array<float, D> const& a, std::array<float, D> const& b) {
         double sum = 0;
         for (std::size_t d = 0; d < D; ++d) {

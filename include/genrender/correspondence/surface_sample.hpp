@@ -21,9 +21,9 @@ namespace genrender {
 
 /// What one pixel of the UV maps shows.
 struct surface_sample {
-    object_index object;
-    std::array<float, 2> uv;
-    pixel at;
+    object_index object;     ///< what the pixel shows
+    std::array<float, 2> uv; ///< texture coordinates
+    pixel at;                ///< of the maps
 };
 
 /// The sample under a token's representative_pixel; none where that is none. Never an average of UVs, which would name

@@ -33,7 +33,7 @@ struct texel_grid_settings {
     /// nothing meet (paper, supplement). 0 matches each object's T to its density in the maps: a quarter of a token,
     /// yet at least two map pixels a texel, so that samples seldom miss it.
     std::size_t T = 0;
-    texel_reading reading = texel_reading::nearest_sample;
+    texel_reading reading = texel_reading::nearest_sample; ///< which samples a texel takes
     /// A texel without a sample of its own takes the nearest sample at most this many texels away on the same object.
     std::size_t dilation = 0;
 };
@@ -44,7 +44,8 @@ class texel_grid {
 public:
     /// A texel that some token of the animation reads, counted from 0.
     struct point_type {
-        std::uint32_t slot = 0;
+        std::uint32_t slot = 0; ///< below slot_count()
+        /// Orders by slot.
         friend constexpr auto operator<=>(point_type, point_type) = default;
     };
 
@@ -62,7 +63,9 @@ public:
         slots_.clear();
     }
 
+    /// Number of frames.
     std::size_t frame_count() const { return frames_; }
+    /// Height and width of the feature map.
     grid_extents grid() const { return grid_; }
     /// T of each object's texture.
     texture_resolution const& resolution() const { return resolution_; }

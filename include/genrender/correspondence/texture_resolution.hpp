@@ -20,7 +20,7 @@ namespace genrender {
 /// T of every object's square texture: one number for all, or matched to how densely the animation shows each object.
 class texture_resolution {
 public:
-    static constexpr std::size_t greatest = std::size_t{1} << 20;
+    static constexpr std::size_t greatest = std::size_t{1} << 20; ///< the greatest T
 
     /// T for every object. Throws value_error outside [1, 2^20].
     static texture_resolution same(std::size_t T) {

@@ -23,13 +23,14 @@ class visible_texels {
 public:
     /// A token that speaks for a texel, with its share.
     struct entry {
-        token_index token;
-        double weight = 1;
+        token_index token; ///< the token
+        double weight = 1; ///< its share, in (0, 1]
     };
 
     /// Collects samples texel by texel.
     class builder {
     public:
+        /// Of texels numbered from 0 to below `slots`.
         explicit builder(std::size_t slots) : nearest_(slots) {}
 
         /// Offers a sample of `token` at squared `distance` from the texel's centre. The nearest sample wins, the first

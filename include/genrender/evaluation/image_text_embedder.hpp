@@ -42,9 +42,12 @@ concept image_text_embedder = std::floating_point<typename Embedder::real_type> 
 /// The least that an image_text_embedder is, for checking what takes one; never run.
 template <class Real>
 struct image_text_embedder_archetype {
-    using real_type = Real;
+    using real_type = Real; ///< type of an embedding's numbers
+    /// Length of an embedding.
     std::size_t dimension() const;
+    /// Embedding of an image [channels, height, width].
     std::vector<Real> embed_image(strided_view<Real const, 3> image) const;
+    /// Embedding of a text.
     std::vector<Real> embed_text(std::string_view text) const;
 };
 

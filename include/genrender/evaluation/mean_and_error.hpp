@@ -15,9 +15,9 @@ namespace genrender {
 
 /// Mean of independent runs. For paired runs, that of their differences says whether one method beats another.
 struct mean_and_error {
-    double mean = 0;
+    double mean = 0;             ///< of the runs
     std::optional<double> error; ///< standard error of the mean, s / sqrt(count); none of a single run
-    std::size_t count = 0;
+    std::size_t count = 0;       ///< number of runs
 };
 
 /// Mean and standard error, from the unbiased variance, of `values`. Throws value_error if there are none.

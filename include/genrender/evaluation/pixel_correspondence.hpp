@@ -22,7 +22,7 @@ namespace genrender {
 
 /// A surface point under the middle of a pixel, and how far the next pixels lie from it on the texture.
 struct seen_point {
-    object_index object;
+    object_index object;           ///< what the pixel shows
     std::array<float, 2> uv{};     ///< texture coordinates
     std::array<float, 2> across{}; ///< change of uv from the pixel to the one on its right
     std::array<float, 2> down{};   ///< change of uv from the pixel to the one below
@@ -47,7 +47,7 @@ struct seen_point {
 /// silhouettes show no point, nor do those that span more than a quarter of a texture.
 class pixel_correspondence {
 public:
-    using point_type = seen_point;
+    using point_type = seen_point; ///< a point of a surface, as a pixel shows it
 
     /// Pixels of images of `grid` by UV maps of the same or a finer resolution; `reach` in pixels, in (0, 0.5]: a
     /// smaller one leaves fewer, closer pairs. Throws value_error if the grid does not divide the maps, UVs are not
@@ -58,7 +58,9 @@ public:
         loop(frames_.size(), [&](std::size_t i) { index(maps, {static_cast<std::uint32_t>(i)}); });
     }
 
+    /// Number of frames.
     std::size_t frame_count() const { return frames_.size(); }
+    /// Height and width of a frame in pixels.
     grid_extents grid() const { return objects_.grid(); }
     /// What each pixel shows.
     pixel_objects const& objects() const { return objects_; }

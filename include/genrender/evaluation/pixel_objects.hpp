@@ -23,6 +23,7 @@ concept object_predicate = std::predicate<Counts const&, object_index>;
 
 /// Counts all objects.
 struct every_object {
+    /// Always true.
     constexpr bool operator()(object_index) const { return true; }
 };
 
@@ -44,7 +45,9 @@ public:
         }
     }
 
+    /// Number of frames.
     std::size_t frame_count() const { return frames_; }
+    /// Height and width of a frame in pixels.
     grid_extents grid() const { return grid_; }
 
     /// The object that fills the pixel; none on the background and on silhouettes.

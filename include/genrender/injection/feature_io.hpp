@@ -116,9 +116,11 @@ concept feature_io_processor = requires(Processor const& processor, attention_pl
 /// The least that a feature_io_processor is, for checking denoisers; never run. The archetype of both ways in is one,
 /// so that the concept denoiser also holds for engines that ask for a feature_io_processor.
 using feature_io_processor_archetype = attention_processor_archetype;
+/// The inputs of a place; never run.
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(feature_io_processor_archetype const&, attention_place,
                                          std::span<frame_index const>);
+/// Takes what a place put out; never run.
 template <class Features>
 void record_features(feature_io_processor_archetype const&, attention_place, Features const&, Features const&);
 

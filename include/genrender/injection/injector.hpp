@@ -5,7 +5,9 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/plain_attention.hpp>
+#include <genrender/blending/blend_plans.hpp>
 #include <genrender/core/sparse_rows.hpp>
+#include <genrender/injection/injection_settings.hpp>
 #include <genrender/injection/pre_attention.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
 
@@ -19,29 +21,20 @@
 
 namespace genrender {
 
-/// What an injector does where the bank holds features.
-template <class Real>
-struct injection_settings {
-    bool pre_attention = true;  ///< eq. 5; without it a frame attends to itself alone
-    bool post_attention = true; ///< eq. 6; without it F_out = F_hat
-    /// alpha of eq. 6 at a site.
-    std::function<Real(site_index)> alpha = [](site_index) { return Real(0.7); };
-    /// A frame that is itself a keyframe finds its tokens twice in [f^i, f_KF], as eq. 5 has it; false drops the second
-    /// copy.
-    bool keeps_own_copy = true;
-};
-
 /// Runs frames with the features of the keyframes. At places where the bank holds nothing the network stays as it is.
 template <class Features, class Real>
 class injector {
 public:
-    /// Rows of the blend plan of a frame at a site; called for frames of the calls alone.
-    using rows_of = std::function<sparse_rows<Real>(site_index, frame_index)>;
+    /// alpha of eq. 6 at a site.
+    using alpha_function = std::function<Real(site_index)>;
 
-    /// Injects from `bank`, recorded of `keyframes` in this order; both must outlive the injector.
-    injector(feature_bank<Features> const& bank, std::span<frame_index const> keyframes, rows_of rows,
-             injection_settings<Real> settings)
-        : bank_(&bank), keyframes_(keyframes), rows_(std::move(rows)), settings_(std::move(settings)) {}
+    /// Injects from `bank`, recorded of `keyframes` in this order; both must outlive the injector. `plans` hold those of
+    /// the frames of its calls; post-attention alone reads them.
+    injector(
+        feature_bank<Features> const& bank, std::span<frame_index const> keyframes, blend_plans<Real> plans,
+        injection_settings settings = {}, alpha_function alpha = [](site_index) { return Real(paper_alpha); })
+        : bank_(&bank), keyframes_(keyframes), plans_(std::move(plans)), settings_(settings), alpha_(std::move(alpha)) {
+    }
 
     /// F_out of eq. 6, where F_hat attends over the sources of eq. 5. Throws value_error if the keyframe pass ran as a
     /// static graph, which gives no K_KF, and shape_error if K_KF or V_KF is of another number of frames than there are
@@ -66,8 +59,8 @@ public:
         if (kept == nullptr || !settings_.post_attention) {
             return F_hat;
         }
-        auto const rows = rows_at(call.place().site, frames);
-        return call.mix(F_hat, *kept->F_KF, rows, settings_.alpha(call.place().site));
+        auto const rows = plans_.rows(call.place().site, frames);
+        return call.mix(F_hat, *kept->F_KF, rows, alpha_(call.place().site));
     }
 
     /// Says what a call lacks that is none.
@@ -98,16 +91,11 @@ public:
 
     /// The plan's rows of each frame at a site: F_bar^i = rows[i] * F_KF.
     std::vector<sparse_rows<Real>> rows_at(site_index site, std::span<frame_index const> frames) const {
-        std::vector<sparse_rows<Real>> rows;
-        rows.reserve(frames.size());
-        for (auto const frame : frames) {
-            rows.push_back(rows_(site, frame));
-        }
-        return rows;
+        return plans_.rows(site, frames);
     }
 
     /// alpha of eq. 6 at a site.
-    Real alpha(site_index site) const { return settings_.alpha(site); }
+    Real alpha(site_index site) const { return alpha_(site); }
 
     /// The position in the drawn keyframes whose tokens a frame does not join, if there is one.
     std::optional<std::size_t> left_out(frame_index frame) const {
@@ -121,8 +109,9 @@ public:
 private:
     feature_bank<Features> const* bank_;
     std::span<frame_index const> keyframes_;
-    rows_of rows_;
-    injection_settings<Real> settings_;
+    blend_plans<Real> plans_;
+    injection_settings settings_;
+    alpha_function alpha_;
 };
 
 } // namespace genrender

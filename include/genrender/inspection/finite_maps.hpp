@@ -18,11 +18,15 @@ namespace genrender {
 template <canonical_maps Maps>
 class finite_maps {
 public:
+    /// Components of a coordinate.
     static constexpr std::size_t dimensions = Maps::dimensions;
 
+    /// Views maps, which have to outlive this.
     explicit finite_maps(Maps const& maps) : maps_(&maps) {}
 
+    /// Number of frames.
     std::size_t frame_count() const { return maps_->frame_count(); }
+    /// Height and width of a frame in pixels.
     grid_extents grid() const { return maps_->grid(); }
 
     /// Whether the pixel shows an object at a place that is known.

@@ -38,17 +38,19 @@ class frame_inspection {
     static constexpr auto D = Maps::dimensions;
 
 public:
+    /// What is measured at an object's pixels, for medians over all frames.
     struct object_values {
-        std::vector<double> sides;
-        std::vector<double> long_sides; // over 8 pixels, where rounding hides what one pixel changes
-        std::array<std::vector<float>, D> values, bends;
-        std::array<std::vector<double>, D> slopes;
+        std::vector<double> sides;                 ///< of footprints, canonical units
+        std::vector<double> long_sides;            ///< over 8 pixels, where rounding hides what one pixel changes
+        std::array<std::vector<float>, D> values;  ///< each coordinate
+        std::array<std::vector<float>, D> bends;   ///< second differences of each coordinate across
+        std::array<std::vector<double>, D> slopes; ///< the steeper of the changes of each coordinate across and down
     };
 
-    frame_check frame;
-    std::map<object_index, object_check> objects;
-    std::map<object_index, texture_tiles> tiles;
-    std::map<object_index, object_values> values;
+    frame_check frame;                            ///< counts of the frame
+    std::map<object_index, object_check> objects; ///< counts of each object in it
+    std::map<object_index, texture_tiles> tiles;  ///< parts of each object's texture that it shows
+    std::map<object_index, object_values> values; ///< values measured at each object's pixels
 
     /// Counts every pixel.
     void count(Maps const& maps, frame_index i) {

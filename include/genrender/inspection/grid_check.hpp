@@ -25,29 +25,32 @@ namespace genrender {
 
 /// Which tokens of a frame some keyframe covers.
 struct token_cover {
-    frame_index frame;
+    frame_index frame; ///< whose tokens these are
     /// [tokens]: in how many of the steps looked at the token is covered; none where it shows no object.
     std::vector<std::optional<std::size_t>> steps;
 };
 
 /// The measures of one feature resolution. Its pairs are a token and a keyframe other than the token's own frame.
 struct grid_check {
-    grid_extents grid;
+    grid_extents grid;                  ///< of the features, in tokens
     std::optional<std::string> refusal; ///< why nothing could be measured: the sentence of the one who refused
 
-    std::size_t seen = 0;       ///< pairs whose keyframe shows the token's surface point, by screen_search
-    std::size_t hits = 0;       ///< of these, for which the correspondence finds a token
-    double error_sum = 0;       ///< over hits, from the found token's middle to the true place, in feature pixels
-    std::size_t found = 0;      ///< pairs for which the correspondence finds a token, of all tokens
-    std::size_t collided = 0;   ///< of these, that share their found token with another one of their frame
-    std::size_t on_objects = 0; ///< tokens that show an object, in every step looked at; and
-    std::size_t covered = 0;    ///< of these, for which some keyframe has a token: the run's coverage
-    std::vector<token_cover> cover;
+    std::size_t seen = 0;           ///< pairs whose keyframe shows the token's surface point, by screen_search
+    std::size_t hits = 0;           ///< of these, for which the correspondence finds a token
+    double error_sum = 0;           ///< over hits, from the found token's middle to the true place, in feature pixels
+    std::size_t found = 0;          ///< pairs for which the correspondence finds a token, of all tokens
+    std::size_t collided = 0;       ///< of these, that share their found token with another one of their frame
+    std::size_t on_objects = 0;     ///< tokens that show an object, in every step looked at
+    std::size_t covered = 0;        ///< of these, for which some keyframe has a token: the run's coverage
+    std::vector<token_cover> cover; ///< of each frame looked at
 
-    /// hits / seen, and likewise; none if there was nothing to measure at.
+    /// hits / seen: share of seen tokens that are found; none if none is seen.
     std::optional<double> hit_rate() const { return ratio(static_cast<double>(hits), seen); }
+    /// error_sum / hits: mean error of found tokens; none without hits.
     std::optional<double> error() const { return ratio(error_sum, hits); }
+    /// collided / found: share of found tokens that two share; none if nothing was found.
     std::optional<double> collisions() const { return ratio(static_cast<double>(collided), found); }
+    /// covered / on_objects: share of tokens that a keyframe covers; none without objects.
     std::optional<double> coverage() const { return ratio(static_cast<double>(covered), on_objects); }
 
 private:

@@ -23,12 +23,13 @@ namespace genrender {
 
 /// The answer of check_maps.
 struct map_check {
-    std::size_t dimensions = 0;
-    grid_extents grid;
-    std::vector<frame_check> frames;
+    std::size_t dimensions = 0;         ///< components of a coordinate: 2 for UVs, 3 for positions at rest
+    grid_extents grid;                  ///< pixels of a frame
+    std::vector<frame_check> frames;    ///< one a frame, in order
     std::vector<object_check> objects;  ///< by number
     std::vector<frame_index> looked_at; ///< frames of the sample
 
+    /// Covered pixels whose coordinate is not finite, of all objects.
     std::size_t not_finite() const {
         std::size_t count = 0;
         for (auto const& object : objects) {

@@ -20,7 +20,7 @@ inline double share_of(std::size_t part, std::size_t whole) {
 
 /// What the maps tell of one object.
 struct object_check {
-    object_index object;
+    object_index object;                      ///< whose figures these are
     std::size_t pixels = 0;                   ///< covered by it, all frames together
     std::vector<frame_index> frames;          ///< that show it
     std::vector<std::array<double, 2>> range; ///< lowest and greatest finite value of each coordinate; none if none is
@@ -45,11 +45,12 @@ struct object_check {
 
 /// What a frame shows.
 struct frame_check {
-    std::size_t pixels = 0;
-    std::size_t covered = 0;
-    std::vector<object_index> objects;
-    bool same_as_previous = false; ///< pixel by pixel
+    std::size_t pixels = 0;            ///< of the frame
+    std::size_t covered = 0;           ///< of these, that show an object
+    std::vector<object_index> objects; ///< that it shows, ascending
+    bool same_as_previous = false;     ///< pixel by pixel
 
+    /// Share of its pixels that show no object, in [0, 1].
     double background_share() const { return share_of(pixels - covered, pixels); }
 };
 

@@ -21,8 +21,8 @@ namespace genrender {
 
 /// A step from one pixel to another, in pixels.
 struct pixel_step {
-    std::int64_t down = 0;
-    std::int64_t right = 0;
+    std::int64_t down = 0;  ///< rows, negative upwards
+    std::int64_t right = 0; ///< columns, negative to the left
 };
 
 /// The pixel a step away, if the map has one.
@@ -111,6 +111,7 @@ std::optional<bool> is_blended_edge(Maps const& maps, frame_index i, pixel p, do
 struct point_claims {
     bool same = false;     ///< one that sees the surface from the same side
     bool mirrored = false; ///< one that sees it from the other side, as the second half of a mirrored texture is seen
+    /// Whether there is one of either kind.
     bool any() const { return same || mirrored; }
 };
 

@@ -24,6 +24,7 @@ public:
         }
     }
 
+    /// Rows and columns from one pixel of the lattice to the next.
     std::size_t stride() const { return stride_; }
     /// Number of pixels.
     std::size_t size() const { return squares(grid_.height) * squares(grid_.width); }

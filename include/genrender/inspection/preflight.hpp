@@ -31,22 +31,22 @@ namespace genrender {
 
 /// How closely a pre-flight looks.
 struct preflight_settings {
-    map_check_settings maps;
-    std::size_t steps = 3;     ///< evenly spread steps whose keyframes are drawn, at most
-    std::size_t tokens = 1024; ///< of a frame whose true partners are searched for, about
-    recommendation_thresholds thresholds;
+    map_check_settings maps;              ///< how closely the maps themselves are looked at
+    std::size_t steps = 3;                ///< evenly spread steps whose keyframes are drawn, at most
+    std::size_t tokens = 1024;            ///< of a frame whose true partners are searched for, about
+    recommendation_thresholds thresholds; ///< what counts as a finding
 };
 
 /// What a pre-flight found.
 struct preflight_report {
-    map_check maps;
+    map_check maps;                                  ///< what the maps tell by themselves
     std::vector<grid_check> grids;                   ///< finest first
     std::vector<std::size_t> steps;                  ///< whose keyframes were drawn
     std::vector<std::vector<frame_index>> keyframes; ///< of each of these steps, in their order
-    std::vector<recommendation> recommendations;
-    std::size_t map_bytes = 0; ///< of coordinates, object numbers and coverage
-    double map_seconds = 0;    ///< by the clock on the wall, for the check of the maps
-    double grid_seconds = 0;   ///< and for compiling and measuring all grids, which a run compiles too
+    std::vector<recommendation> recommendations;     ///< on the maps, then on keyframes and grids
+    std::size_t map_bytes = 0;                       ///< of coordinates, object numbers and coverage
+    double map_seconds = 0;                          ///< by the clock on the wall, for the check of the maps
+    double grid_seconds = 0; ///< and for compiling and measuring all grids, which a run compiles too
 
     /// Whether a run would take these maps and settings.
     bool allows_run() const {

@@ -55,12 +55,12 @@ inline constexpr std::array<std::string_view, 25> recommendation_names{
 
 /// One finding, in figures. Programs say it in words and add how their users ask for the remedy.
 struct recommendation {
-    recommendation_kind kind;
-    double figure = 0;
-    std::optional<object_index> object{};
-    std::optional<grid_extents> grid{};
-    std::vector<frame_index> frames{}; ///< ascending; empty where it is about all
-    std::string detail{};              ///< of the refusals: the sentence of the one who refused
+    recommendation_kind kind;             ///< which finding
+    double figure = 0;                    ///< its figure, whose meaning and unit are the kind's
+    std::optional<object_index> object{}; ///< the object that it is about; none if it is about all
+    std::optional<grid_extents> grid{};   ///< the feature resolution that it is about; none if it is about all
+    std::vector<frame_index> frames{};    ///< ascending; empty where it is about all
+    std::string detail{};                 ///< of the refusals: the sentence of the one who refused
 
     /// Whether a run would refuse these maps or settings.
     bool forbids_run() const {
@@ -68,6 +68,7 @@ struct recommendation {
                kind == recommendation_kind::keyframes_refused || kind == recommendation_kind::grid_refused;
     }
 
+    /// The kind as a word, the name of its enumerator.
     std::string_view name() const { return recommendation_names[static_cast<std::size_t>(kind)]; }
 };
 

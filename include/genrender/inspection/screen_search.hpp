@@ -25,11 +25,11 @@ namespace genrender {
 /// A place on the screen that shows a surface point.
 template <std::size_t D>
 struct screen_place {
-    double row = 0;    ///< in pixels; a pixel's middle lies at its row
-    double column = 0; ///< plus 0.5, likewise
-    pixel at;          ///< the pixel that shows the point
-    surface_footprint<D> footprint;
-    double offset = 0; ///< from the pixel's middle along the axis on which it is further, in pixels
+    double row = 0;                 ///< in pixels; a pixel's middle lies at its row plus 0.5
+    double column = 0;              ///< in pixels; a pixel's middle lies at its column plus 0.5
+    pixel at;                       ///< the pixel that shows the point
+    surface_footprint<D> footprint; ///< change of the point to the pixel on the right and the one below
+    double offset = 0;              ///< from the pixel's middle along the axis on which it is further, in pixels
 };
 
 /// Finds surface points in one frame: from the nearest of a lattice of pixels it walks along the footprints to the
@@ -38,8 +38,9 @@ struct screen_place {
 template <canonical_maps Maps>
 class screen_search {
 public:
+    /// Components of a coordinate.
     static constexpr auto dimensions = Maps::dimensions;
-    using point_type = std::array<float, dimensions>;
+    using point_type = std::array<float, dimensions>; ///< a coordinate
 
     /// Remembers at most `most` pixels of frame i.
     screen_search(Maps const& maps, frame_index i, std::size_t most = std::size_t{1} << 16) : maps_(&maps), frame_(i) {

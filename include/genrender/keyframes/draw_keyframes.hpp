@@ -28,9 +28,9 @@ enum class keyframe_drawing : std::uint8_t {
 /// Which frames become keyframes.
 struct keyframe_settings {
     std::size_t count = 4; ///< m, at most the number of frames; ignored by keyframe_drawing::fixed
-    keyframe_drawing drawing = keyframe_drawing::uniform;
-    std::vector<frame_index> frames; ///< for keyframe_drawing::fixed
-    std::uint64_t seed = 0;
+    keyframe_drawing drawing = keyframe_drawing::uniform; ///< how they are chosen
+    std::vector<frame_index> frames;                      ///< for keyframe_drawing::fixed
+    std::uint64_t seed = 0;                               ///< of the drawing alone: the noise has its own
 };
 
 /// KF = shuffle({i_1, ..., i_m}): different frames of an animation of `frame_count` frames, in an order drawn anew each

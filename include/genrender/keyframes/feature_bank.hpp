@@ -28,6 +28,7 @@ struct keyframe_features {
 template <class Features>
 class feature_bank {
 public:
+    /// Empty, with a place for each guidance branch of each site.
     feature_bank(std::size_t sites, std::size_t branches)
         : sites_(sites), branches_(branches), places_(sites * branches) {}
 

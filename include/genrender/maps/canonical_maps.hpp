@@ -57,6 +57,7 @@ template <std::size_t D>
     requires(D == 2 || D == 3)
 class canonical_maps_view {
 public:
+    /// Components of a coordinate: 2 for UVs, 3 for positions at rest.
     static constexpr std::size_t dimensions = D;
 
     /// `points` [frames, height, width, D], texture coordinates or positions in the units of the rest pose; `object`
@@ -70,7 +71,9 @@ public:
         require_shape(name, "object", object, e);
     }
 
+    /// Number of frames.
     std::size_t frame_count() const { return coverage_.extent(0); }
+    /// Height and width of a frame in pixels.
     grid_extents grid() const { return {coverage_.extent(1), coverage_.extent(2)}; }
 
     /// Whether the pixel shows an object.

@@ -30,7 +30,9 @@ struct depth_maps {
         coverage.fill(0);
     }
 
+    /// Number of frames.
     std::size_t frame_count() const { return depth.shape()[0]; }
+    /// Height and width of a frame in pixels.
     grid_extents grid() const { return {depth.shape()[1], depth.shape()[2]}; }
 };
 

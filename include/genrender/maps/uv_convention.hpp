@@ -22,8 +22,8 @@ enum class uv_outside {
 
 /// How maps were written.
 struct uv_convention {
-    bool v_upwards = false; ///< v = 0 is the last row of texels (OpenGL, Blender) rather than the first
-    uv_outside outside = uv_outside::keep;
+    bool v_upwards = false;                ///< v = 0 is the last row of texels (OpenGL, Blender) rather than the first
+    uv_outside outside = uv_outside::keep; ///< what becomes of UVs outside [0, 1]
 };
 
 namespace detail {

@@ -31,7 +31,9 @@ struct uv_maps {
         coverage.fill(0);
     }
 
+    /// Number of frames.
     std::size_t frame_count() const { return coverage.shape()[0]; }
+    /// Height and width of a frame in pixels.
     grid_extents grid() const { return {coverage.shape()[1], coverage.shape()[2]}; }
 };
 

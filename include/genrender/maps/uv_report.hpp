@@ -16,8 +16,8 @@ namespace genrender {
 
 /// Counts over all pixels of all frames.
 struct uv_report {
-    std::size_t pixels = 0;
-    std::size_t covered = 0;
+    std::size_t pixels = 0;                ///< of all frames
+    std::size_t covered = 0;               ///< of these, that show an object
     std::size_t out_of_range = 0;          ///< covered, finite, and u or v outside [0, 1]
     std::size_t not_finite = 0;            ///< covered, and u or v NaN or infinite
     std::vector<frame_index> empty_frames; ///< frames that show no object at all

@@ -32,8 +32,8 @@ struct environment_rays {
 
     /// A pixel's unit direction, and how it changes to the pixel on the right and the one below.
     struct ray {
-        std::array<float, 3> direction;
-        surface_footprint<3> footprint;
+        std::array<float, 3> direction; ///< from the camera, of length 1
+        surface_footprint<3> footprint; ///< change of the direction to the pixel on the right and the one below
     };
 
     /// Throws value_error if there is no function, or its directions are not finite or 0.

@@ -16,6 +16,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace genrender {
@@ -36,15 +37,15 @@ enum class noise_reading : std::uint8_t {
 
 /// How initial noise is made.
 struct noise_settings {
-    noise_kind kind = noise_kind::uv;
-    background_noise background = background_noise::fixed;
+    noise_kind kind = noise_kind::uv;                      ///< which noise the frames start from
+    background_noise background = background_noise::fixed; ///< which noise pixels without an object get
     /// T, texels along each side of an object's noise texture under the readings of texels: a low T repeats
-    /// values in neighbouring pixels, a high T gives each frame noise of its own. 0 matches each object's T to its
+    /// values in neighbouring pixels, a high T gives each frame noise of its own. None matches each object's T to its
     /// density in the maps, one texel a latent pixel.
-    std::size_t T = 0;
-    std::uint64_t seed = 0;
-    noise_reading reading = noise_reading::surface;
-    environment_rays rays = {}; ///< what background_noise::environment needs
+    std::optional<std::size_t> T{};
+    std::uint64_t seed = 0;                         ///< two runs of one seed have the same noise
+    noise_reading reading = noise_reading::surface; ///< how a latent pixel reads the noise of a surface
+    environment_rays rays = {};                     ///< what background_noise::environment needs
 };
 
 namespace detail {
@@ -91,8 +92,8 @@ void texel_noise(strided_view<Real, 3> z, uv_maps_view const& maps, frame_index 
 /// Throws value_error for settings that contradict each other.
 inline void require_noise_settings(noise_settings const& settings) {
     auto const has_texels = settings.reading != noise_reading::surface;
-    require_value(settings.T == 0 || has_texels, "initial_noise", "settings.T", settings.T,
-                  "0, since noise_reading::surface has no texture resolution");
+    require_value(!settings.T || has_texels, "initial_noise", "settings.T", settings.T.value_or(0),
+                  "none, since noise_reading::surface has no texture resolution");
     require_value(settings.background != background_noise::environment || (!has_texels && settings.rays.direction),
                   "initial_noise", "settings.background", "environment",
                   "noise_reading::surface and settings.rays beside it");
@@ -101,8 +102,8 @@ inline void require_noise_settings(noise_settings const& settings) {
 } // namespace detail
 
 /// Writes noise of N(0, 1) into z [frames, channels, height, width]; `frames[i]` is the frame that entry i shows. Under
-/// noise_kind::uv, z = pi_UV(z_UV) by settings.reading. Each frame depends on its own maps alone, and with T = 0 under
-/// readings of texels on the T that all frames of the maps give its objects. Throws shape_error if `frames` does not
+/// noise_kind::uv, z = pi_UV(z_UV) by settings.reading. Each frame depends on its own maps alone, and without T
+/// under readings of texels on the T that all frames of the maps give its objects. Throws shape_error if `frames` does not
 /// count the entries of z, value_error if a frame is not in the maps, the latents do not divide them, a coordinate is
 /// not finite, or settings contradict each other or, with texels, the maps are not UV maps.
 template <class Real, canonical_maps Maps>
@@ -132,7 +133,7 @@ void initial_noise(strided_view<Real, 4> z, Maps const& maps, std::span<frame_in
         });
     } else if constexpr (std::same_as<Maps, uv_maps_view>) {
         auto const resolution =
-            settings.T > 0 ? texture_resolution::same(settings.T) : texture_resolution::matched(maps, grid, 1);
+            settings.T ? texture_resolution::same(*settings.T) : texture_resolution::matched(maps, grid, 1);
         loop(frames.size(), [&](std::size_t i) { detail::texel_noise(z[i], maps, frames[i], resolution, settings); });
     } else {
         throw value_error(

@@ -14,7 +14,7 @@ namespace genrender {
 /// Noise of every texel of every object's texture, for any number of channels. Nothing is stored: a value is a function
 /// of its address, so any frame can be made in any order.
 struct noise_texture {
-    std::uint64_t seed = 0;
+    std::uint64_t seed = 0; ///< textures of different seeds are independent
 
     /// The value of N(0, 1) at a texel and channel, for rows and columns below 2^20 and channels below 2^24.
     double operator()(texel const& t, std::uint32_t channel) const {

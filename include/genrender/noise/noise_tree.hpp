@@ -31,8 +31,8 @@ namespace genrender {
 template <std::size_t D>
 class noise_tree {
 public:
-    static constexpr std::uint32_t deepest = 48;
-    static constexpr double half_width = 65536;
+    static constexpr std::uint32_t deepest = 48; ///< levels below the root, at most
+    static constexpr double half_width = 65536;  ///< coordinates lie in [-half_width, half_width) on each axis
 
     /// The noise of one object's space in one diffusion step; other streams, steps and objects have noise of their own.
     noise_tree(std::uint64_t seed, random_stream stream, object_index object, std::uint32_t step = 0)

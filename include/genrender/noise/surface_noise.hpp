@@ -25,19 +25,21 @@ namespace genrender {
 /// What the latent pixels of one frame look at: cells of the noise of each object and of the surroundings.
 template <std::size_t D>
 struct noise_looks {
-    std::map<object_index, std::vector<noise_request<D>>> objects;
-    std::vector<noise_request<3>> surroundings; ///< under background_noise::environment
-    std::vector<double> background;             ///< share of each latent pixel that shows no object, in [0, 1]
+    std::map<object_index, std::vector<noise_request<D>>> objects; ///< what latent pixels look at on each object
+    std::vector<noise_request<3>> surroundings;                    ///< under background_noise::environment
+    std::vector<double> background; ///< share of each latent pixel that shows no object, in [0, 1]
 };
 
 /// Where the points lie that a latent pixel looks at: at least 4 x 4 of them, in the maps' pixels or between them.
 struct noise_sampling {
+    /// Least number of points along the side of a latent pixel.
     static constexpr std::size_t points_per_side = 4;
 
     std::size_t stride = 1; ///< pixels of the map from one looked at to the next
     std::size_t looked = 1; ///< pixels looked at along the side of a latent pixel
     std::size_t parts = 1;  ///< parts of each along that side, at least
 
+    /// For latent pixels that are squares of `cell_side` pixels of the maps.
     explicit noise_sampling(std::size_t cell_side)
         : stride(std::max<std::size_t>(1, cell_side / points_per_side)), looked((cell_side + stride - 1) / stride),
           parts((points_per_side + looked - 1) / looked) {}

@@ -54,17 +54,18 @@ enum class without_background : std::uint8_t {
 
 /// Which statistics latent normalisation makes alike.
 enum class adain_statistics : std::uint8_t {
-    mean_and_deviation, ///< the paper's
-    mean                ///< means alone: nearly flat backgrounds have no deviation to divide by
+    mean,              ///< means alone
+    mean_and_deviation ///< the paper's: nearly flat backgrounds have no deviation to divide by, and burn or wash out
 };
 
 /// How latents are normalised.
 template <class Real>
 struct adain_settings {
     bool enabled = true;
-    adain_statistics statistics = adain_statistics::mean_and_deviation;
-    Real window_begin = 0;        ///< first and
-    Real window_end = 1;          ///< last share of the steps in which it runs, [begin, end)
+    adain_statistics statistics = adain_statistics::mean;
+    /// Steps in which it runs: those whose share step / steps lies in [window_begin, window_end).
+    Real window_begin = 0;
+    Real window_end = 1;          ///< see window_begin
     std::size_t least_pixels = 2; ///< background pixels below which `fallback` decides; at least 2
     without_background fallback = without_background::skip;
     bool on_noisy_latents = false; ///< normalise z_{t-1} after the sampler's step instead of the clean estimates

@@ -21,9 +21,9 @@ namespace genrender {
 /// Mean and standard deviation per channel, and the number of pixels they come from.
 template <class Real>
 struct channel_statistics {
-    std::vector<Real> mean;
-    std::vector<Real> deviation;
-    std::size_t pixels = 0;
+    std::vector<Real> mean;      ///< [channels]
+    std::vector<Real> deviation; ///< [channels], > 0
+    std::size_t pixels = 0;      ///< how many they come from
 };
 
 namespace detail {

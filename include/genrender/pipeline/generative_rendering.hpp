@@ -5,12 +5,14 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/blend_plans.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace genrender {
@@ -18,7 +20,7 @@ namespace genrender {
 /// Whether a step draws keyframes: it lies in the window, and something is injected.
 template <class Real>
 bool has_keyframes(render_settings<Real> const& settings, std::size_t step) {
-    return (settings.pre_attention || settings.post_attention) &&
+    return (settings.injection.pre_attention || settings.injection.post_attention) &&
            is_in_window(step, settings.steps, settings.window_begin, settings.window_end);
 }
 
@@ -37,7 +39,7 @@ struct generative_rendering {
     /// Post-attention injection needs them, in any step that has keyframes.
     template <class Real>
     bool uses_correspondence(render_settings<Real> const& settings) const {
-        for (std::size_t step = 0; settings.post_attention && step < settings.steps; ++step) {
+        for (std::size_t step = 0; settings.injection.post_attention && step < settings.steps; ++step) {
             if (has_keyframes(settings, step)) {
                 return true;
             }
@@ -57,24 +59,20 @@ struct generative_rendering {
             return;
         }
         // f_KF, F_KF <- Phi(z_KF, D_KF, c)
-        auto const bank = passes.record_keyframes(KF, settings.pre_attention);
+        auto const bank = passes.record_keyframes(KF, settings.injection.pre_attention);
 
         // z^i <- Phi(z^i, D^i, c, f_KF, F_bar^i), F_bar^i = pi_i(T_bar_KF)
-        injection_settings<real_type> injection;
-        injection.pre_attention = settings.pre_attention;
-        injection.post_attention = settings.post_attention;
-        injection.keeps_own_copy = settings.keeps_own_copy;
-        injection.alpha = [&passes](site_index site) { return passes.alpha(site); };
         passes.denoise_frames([&](std::span<frame_index const> frames) {
-            typename injector_type::rows_of rows;
-            if (settings.post_attention) {
-                rows = passes.plan_rows(frames, [&](auto const& map, frame_index i) {
+            blend_plans<real_type> plans;
+            if (settings.injection.post_attention) {
+                plans = passes.make_plans(frames, [&](auto const& map, frame_index i) {
                     auto plan = make_blend_plan<real_type>(map, KF, i, settings.first_fill_share, settings.average);
-                    passes.report_coverage(map, i, plan.covered_count());
+                    passes.report_coverage(map.grid(), i, plan.covered_count());
                     return plan;
                 });
             }
-            return injector_type(bank, KF, rows, injection);
+            return injector_type(bank, KF, std::move(plans), settings.injection,
+                                 [&passes](site_index site) { return passes.alpha(site); });
         });
     }
 };

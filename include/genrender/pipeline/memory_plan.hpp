@@ -99,15 +99,15 @@ inline std::size_t texel_bytes(run_description const& run, grid_extents grid) {
            grown_capacity(grid.size()) * entry * run.frames;
 }
 
-/// Stacks of the latents' size that live while D is evaluated; updates between evaluations add none.
+/// Stacks of the latents' size that live while D is evaluated, that of the result included; updates between evaluations add none.
 inline std::size_t latent_stacks(sampler_kind sampler) {
     switch (sampler) {
     case sampler_kind::heun:
-        return 4;
+        return 5;
     case sampler_kind::dpmpp_2m:
-        return 3;
+        return 4;
     default:
-        return 2;
+        return 3;
     }
 }
 
@@ -129,7 +129,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     std::size_t m = 0;
     std::set<frame_index> ever_keyframes;
     for (std::size_t step = 0; step < settings.steps; ++step) {
-        auto const of_step = settings.sampler == sampler_kind::heun && step > 0 ? std::size_t{2} : std::size_t{1};
+        auto const of_step = evaluations_at(settings.sampler, step);
         auto const drawn = method.keyframes(settings, run.frames, step);
         evaluations += of_step;
         with_keyframes += drawn.empty() ? 0 : of_step;
@@ -156,21 +156,21 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
             work.plain_attention_flops += plain_evaluations * frames * own;
             work.projection_flops += static_cast<double>(work.denoised_frames) * 6 * N * C * C;
             auto const takes_part = m > 0 && settings.layers(site, branch);
-            auto const blocks = takes_part && settings.pre_attention ? keyframes : 0;
-            auto const left_out = settings.keeps_own_copy ? 0 : blocks; // a block for each keyframe
-            work.attention_flops += plain_evaluations * frames * own +  // every frame to itself
+            auto const blocks = takes_part && settings.injection.pre_attention ? keyframes : 0;
+            auto const left_out = settings.injection.keeps_own_copy ? 0 : blocks; // a block for each keyframe
+            work.attention_flops += plain_evaluations * frames * own +            // every frame to itself
                                     injected_evaluations * (frames * blocks - left_out) * own +     // and to keyframes
                                     injected_evaluations * keyframes * std::max(1.0, blocks) * own; // among themselves
             if (!takes_part) {
                 continue;
             }
             largest_recorded = std::max(largest_recorded, elements);
-            bytes.bank += 3 * m * elements * feature_bytes<Real>(settings.feature_storage);
-            if (settings.post_attention) {
+            bytes.bank += 3 * m * elements * feature_bytes<Real>(settings.keyframe_storage);
+            if (settings.injection.post_attention) {
                 grids.insert(site.grid);
                 work.mixed_bytes +=
                     injected_evaluations * frames * N * C *
-                    static_cast<double>(2 * sizeof(Real) + m * feature_bytes<Real>(settings.feature_storage));
+                    static_cast<double>(2 * sizeof(Real) + m * feature_bytes<Real>(settings.keyframe_storage));
             }
         }
     }
@@ -187,11 +187,11 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     }
 
     // What does not: the keyframes' features and the calls under way.
-    auto const of_frame = std::max(run.network_bytes, 5 * largest_site * sizeof(Real)); // f, Q, K, V, F
+    auto const of_frame = std::max(run.network_bytes.value_or(0), 5 * largest_site * sizeof(Real)); // f, Q, K, V, F
     auto const calls = std::min(std::max<std::size_t>(run.calls_at_once, 1), run.frames);
     auto const at_once = std::min(calls * std::min(settings.frames_per_call, run.frames), run.frames);
     bytes.keyframe_latents = 2 * m * latent_bytes;
-    bytes.residuals = settings.reuses_keyframes ? m * run.residual_bytes : 0;
+    bytes.residuals = settings.reuses_keyframes ? m * run.residual_bytes.value_or(0) : 0;
     std::size_t making = 0;
     for (auto const& grid : grids) {
         if (!by_texels) {
@@ -207,8 +207,8 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     // Recorded features of the site that is running are counted in the bank. If they are copies of 16 bits, these are
     // made after attention, when a call holds less by about as much.
     auto const counted_twice = 3 * m * largest_recorded * sizeof(Real);
-    auto const keyframe_call = run.call_bytes + m * of_frame - std::min(counted_twice, m * of_frame);
-    auto const frames_call = calls * run.call_bytes + at_once * of_frame;
+    auto const keyframe_call = run.call_bytes.value_or(0) + m * of_frame - std::min(counted_twice, m * of_frame);
+    auto const frames_call = calls * run.call_bytes.value_or(0) + at_once * of_frame;
     bytes.network = std::max(keyframe_call, frames_call);
     auto const recording = m > 0 ? bytes.keyframe_latents + keyframe_call : 0;
     auto const injecting = bytes.blend_plans + std::max(frames_call, calls * making);

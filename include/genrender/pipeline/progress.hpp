@@ -24,13 +24,13 @@ enum class render_pass : std::uint8_t {
 
 /// State of a run, after the work it names was done.
 struct progress {
-    std::size_t step = 0;  ///< diffusion step, from 0
-    std::size_t steps = 0; ///< T
-    render_pass pass = render_pass::keyframes;
-    std::size_t frames_done = 0;  ///< of this pass
-    std::size_t frames = 0;       ///< in this pass
-    double elapsed_seconds = 0;   ///< since the run began
-    double remaining_seconds = 0; ///< estimate: what is left takes as long per frame as what was done
+    std::size_t step = 0;                      ///< diffusion step, from 0
+    std::size_t steps = 0;                     ///< T
+    render_pass pass = render_pass::keyframes; ///< what is being done
+    std::size_t frames_done = 0;               ///< of this pass
+    std::size_t frames = 0;                    ///< in this pass
+    double elapsed_seconds = 0;                ///< since the run began
+    double remaining_seconds = 0;              ///< estimate: what is left takes as long per frame as what was done
 };
 
 /// Called from one thread at a time after each call of the denoiser; returning false ends the run with `cancelled`, and

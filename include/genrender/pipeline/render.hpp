@@ -11,6 +11,7 @@
 #include <genrender/sampling/karras_schedule.hpp>
 
 #include <chrono>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -72,51 +73,64 @@ template <class Real, class Method = generative_rendering>
 std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t frames, Method const& method = {}) {
     std::size_t total = 0;
     for (std::size_t step = 0; step < settings.steps; ++step) {
-        // Heun's second evaluation is at the level at which the next step begins.
-        auto const evaluations = settings.sampler == sampler_kind::heun && step > 0 ? 2U : 1U;
-        total += evaluations * (frames + method.keyframes(settings, frames, step).size());
+        total += evaluations_at(settings.sampler, step) * (frames + method.keyframes(settings, frames, step).size());
     }
     return total;
 }
 
-/// The correspondence map that `make_map(grid)` compiles.
-template <class MakeMap>
-using map_made_by = std::invoke_result_t<MakeMap const&, grid_extents>;
+/// What a run needs besides a denoiser and maps, by name. All but the settings has a default. `Map` is the
+/// correspondence map of a feature resolution.
+template <class Real, class Method, correspondence_map Map>
+struct render_arguments {
+    render_settings<Real> settings{};
+    /// What is done in a step: a sequence_method.
+    Method method{};
+    /// Compiles the correspondence map of a feature grid; empty for the one that `settings.correspondence` chooses.
+    std::function<Map(grid_extents)> make_map{};
+    /// Told how far the run is; false ends it.
+    progress_observer observer{};
+    /// Runs what can be done at the same time; the frames are the same with every loop, bit for bit.
+    any_loop loop{};
+};
 
-/// Renders an animation by a method with a denoiser: z_0 [frames, channels, height, width], the clean latents of all
-/// frames, for the user's decoder. UV maps [frames, height, width] are of full resolution, a whole multiple of the
-/// denoiser's latent grid and feature grids; the denoiser owns prompt and depth. `make_map(grid)` compiles the
-/// correspondence map of a feature resolution. The same seeds give the same frames with every `loop`, bit for bit.
-/// Throws value_error or shape_error for arguments that do not fit, before anything is run; cancelled if the observer
-/// ends the run; what the denoiser throws.
-template <denoiser Phi, canonical_maps Maps, class MakeMap,
-          sequence_method<sequence_passes<Phi, map_made_by<MakeMap>>> Method>
-latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV, MakeMap const& make_map,
-                                        render_settings<typename Phi::real_type> const& settings, render_report& report,
-                                        progress_observer observer = {}, any_loop const& loop = {}) {
-    using Real = typename Phi::real_type;
-    require_render_settings(settings, UV.frame_count());
-    require_finite_coordinates(UV);
-    auto const sigmas = karras_schedule<Real>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
-    auto const N = UV.frame_count();
-    auto const grid = grid_extents(phi.latent_grid());
-    auto const total = frames_to_denoise(settings, N, method);
+/// What a run gives.
+template <class Real>
+struct render_result {
+    /// z_0 [frames, channels, height, width], the clean latents of all frames, for the user's decoder. Of a run that was
+    /// cancelled, z after its last whole step; before the first, the initial noise z_T.
+    latents<Real> z;
+    render_report report;
+    bool is_cancelled = false; ///< whether the observer ended the run
+};
 
-    auto const start = std::chrono::steady_clock::now();
-    report.set_vector_target(chosen_vector_target());
+namespace detail {
 
-    // z_UV ~ N(0, I); z = z_T = sigma_T pi_UV(z_UV)
-    auto z = latents<Real>::from_shape({N, phi.latent_channels(), grid.height, grid.width});
-    std::vector<frame_index> frames;
-    for (std::uint32_t i = 0; i < N; ++i) {
-        frames.push_back({i});
-    }
-    initial_noise(to_view(z), UV, frames, settings.noise, loop);
-    z *= sigmas.front();
+/// `Map`, or for void the map that settings choose for maps of D canonical coordinates.
+template <class Map, std::size_t D>
+using map_or_chosen = std::conditional_t<std::is_void_v<Map>, chosen_correspondence<D>, Map>;
 
-    // Compile what geometry decides, once for the animation.
-    auto const background = background_mask(UV, grid);
-    correspondence_set<map_made_by<MakeMap>> maps;
+/// The scalar of a denoiser; float for what is none.
+template <class Phi>
+struct real_type_of {
+    using type = float;
+};
+template <class Phi>
+    requires std::floating_point<typename Phi::real_type>
+struct real_type_of<Phi> {
+    using type = typename Phi::real_type;
+};
+
+/// The canonical coordinates of maps; 2 for what are none.
+template <class Maps>
+inline constexpr std::size_t dimensions_of = 2;
+template <canonical_maps Maps>
+inline constexpr std::size_t dimensions_of<Maps> = Maps::dimensions;
+
+/// Compiles what geometry decides, once for the animation: the correspondence maps of all sites that take part.
+template <class Map, class Phi, class Method, class Real, class MakeMap>
+correspondence_set<Map> compile_maps(Phi const& phi, Method const& method, render_settings<Real> const& settings,
+                                     MakeMap const& make_map) {
+    correspondence_set<Map> maps;
     for (auto const& site : phi.sites()) {
         for (std::uint32_t branch = 0; branch < phi.branches(); ++branch) {
             if (!method.uses_correspondence(settings) || !settings.layers(site, branch)) {
@@ -129,70 +143,86 @@ latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Ma
             maps.add(site.grid, make_map);
         }
     }
+    return maps;
+}
 
-    report.add_seconds(0, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+} // namespace detail
 
-    // for t = T, ..., 1: what the method does, for alg. 1 keyframes, features, blending and injection; normalisation
-    progress_meter meter(settings.steps, total, std::move(observer));
-    sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
-                              report, method);
-    // Samplers are compiled once for all networks, maps and methods.
-    std::function<latents<Real>(latents<Real> const&, Real)> const denoise = std::cref(D);
-    std::function<void(std::size_t, latents<Real>&)> const normalize = [&](std::size_t step, latents<Real>& z_next) {
-        if (settings.normalization.enabled && settings.normalization.on_noisy_latents) {
-            D.normalize(z_next, step);
+/// Renders an animation by a method with a denoiser: [GR alg. 1] unless another method is named. UV maps [frames,
+/// height, width] are of full resolution, a whole multiple of the denoiser's latent grid and feature grids; the denoiser
+/// owns prompt and depth. `Map` is named for a correspondence of the user's own. The same seeds give the same frames.
+///
+///     auto const result = render(phi, UV, {.settings = settings, .observer = show, .loop = threaded_loop(4)});
+///     auto const flow = render<tokenflow>(phi, UV, {.settings = settings});
+///     auto const own = render<generative_rendering, my_map>(phi, UV, {.settings = settings, .make_map = make_my_map});
+///
+/// Throws value_error or shape_error for arguments that do not fit, before anything is run, and what the denoiser
+/// throws. A run that its observer ends returns what there is.
+template <class Method = generative_rendering, class Map = void, class Phi, class Maps>
+render_result<typename detail::real_type_of<Phi>::type>
+render(Phi const& phi, Maps const& UV,
+       render_arguments<typename detail::real_type_of<Phi>::type, Method,
+                        detail::map_or_chosen<Map, detail::dimensions_of<Maps>>> const& arguments) {
+    require_denoiser<Phi>();
+    require_canonical_maps<Maps>();
+    if constexpr (denoiser<Phi> && canonical_maps<Maps>) {
+        using Real = typename Phi::real_type;
+        using map_type = detail::map_or_chosen<Map, Maps::dimensions>;
+        static_assert(sequence_method<Method, sequence_passes<Phi, map_type>>, "render: Method is a sequence_method");
+        auto const& settings = arguments.settings;
+        auto const& method = arguments.method;
+        auto const& loop = arguments.loop;
+        require_render_settings(settings, UV.frame_count());
+        require_finite_coordinates(UV);
+        auto const sigmas = karras_schedule<Real>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
+        auto const N = UV.frame_count();
+        auto const grid = grid_extents(phi.latent_grid());
+        auto const total = frames_to_denoise(settings, N, method);
+
+        auto const start = std::chrono::steady_clock::now();
+        render_result<Real> result{latents<Real>::from_shape({N, phi.latent_channels(), grid.height, grid.width}), {}};
+        result.report.kernels = chosen_vector_target();
+        report_writer report(result.report);
+
+        // z_UV ~ N(0, I); z = z_T = sigma_T pi_UV(z_UV)
+        std::vector<frame_index> frames;
+        for (std::uint32_t i = 0; i < N; ++i) {
+            frames.push_back({i});
         }
-    };
-    return sample(settings.sampler, denoise, std::move(z), sigmas, normalize);
-}
+        initial_noise(to_view(result.z), UV, frames, settings.noise, loop);
+        result.z *= sigmas.front();
 
-/// The same with the correspondence that `settings.correspondence` chooses.
-template <denoiser Phi, canonical_maps Maps,
-          sequence_method<sequence_passes<Phi, chosen_correspondence<Maps::dimensions>>> Method>
-latents<typename Phi::real_type> render(Method const& method, Phi const& phi, Maps const& UV,
-                                        render_settings<typename Phi::real_type> const& settings, render_report& report,
-                                        progress_observer observer = {}, any_loop const& loop = {}) {
-    auto const make_map = [&](grid_extents grid) {
-        return chosen_correspondence<Maps::dimensions>(UV, grid, settings.correspondence, loop);
-    };
-    return render(method, phi, UV, make_map, settings, report, std::move(observer), loop);
-}
+        auto const background = background_mask(UV, grid);
+        auto const maps = detail::compile_maps<map_type>(phi, method, settings, [&](grid_extents extents) {
+            if constexpr (std::is_void_v<Map>) {
+                if (!arguments.make_map) {
+                    return map_type(UV, extents, settings.correspondence, loop);
+                }
+            } else {
+                require_value(arguments.make_map != nullptr, "render", "make_map", "empty",
+                              "a function that compiles the named map");
+            }
+            return arguments.make_map(extents);
+        });
+        report.add_seconds(0, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
-/// Alg. 1 with a correspondence of the user's own.
-template <denoiser Phi, canonical_maps Maps, class MakeMap>
-latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV, MakeMap const& make_map,
-                                        render_settings<typename Phi::real_type> const& settings, render_report& report,
-                                        progress_observer observer = {}, any_loop const& loop = {}) {
-    require_correspondence_map<map_made_by<MakeMap>>();
-    return render(generative_rendering{}, phi, UV, make_map, settings, report, std::move(observer), loop);
-}
-
-/// Alg. 1: Generative Rendering, as the paper has it.
-template <denoiser Phi, canonical_maps Maps>
-latents<typename Phi::real_type> render(Phi const& phi, Maps const& UV,
-                                        render_settings<typename Phi::real_type> const& settings, render_report& report,
-                                        progress_observer observer = {}, any_loop const& loop = {}) {
-    return render(generative_rendering{}, phi, UV, settings, report, std::move(observer), loop);
-}
-
-/// What follows renders nothing: it says in a sentence which argument of render() is not what it must be.
-template <class Phi, class Maps, class... Rest>
-    requires(canonical_maps<Maps> && !denoiser<Phi>)
-auto render(Phi const&, Maps const&, Rest const&...) { require_denoiser<Phi>(); }
-
-template <class Method, class Phi, class Maps, class... Rest>
-    requires(canonical_maps<Maps> && !denoiser<Phi>)
-auto render(Method const&, Phi const&, Maps const&, Rest const&...) { require_denoiser<Phi>(); }
-
-template <denoiser Phi, class Maps, class... Rest>
-    requires(!canonical_maps<Maps>)
-auto render(Phi const&, Maps const&, Rest const&...) { require_canonical_maps<Maps>(); }
-
-template <denoiser Phi, canonical_maps Maps, class Real, class... Rest>
-    requires(!std::is_same_v<Real, typename Phi::real_type>)
-auto render(Phi const&, Maps const&, render_settings<Real> const&, Rest const&...) {
-    static_assert(std::is_same_v<Real, typename Phi::real_type>,
-                  "render: settings are render_settings<Real> with the real_type of the denoiser");
+        // for t = T, ..., 1: what the method does, for alg. 1 keyframes, features, blending and injection; normalisation
+        progress_meter meter(settings.steps, total, arguments.observer);
+        sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
+                                  report, method);
+        // Samplers are compiled once for all networks, maps and methods.
+        std::function<latents<Real>(latents<Real> const&, Real, std::size_t)> const denoise = std::cref(D);
+        std::function<void(std::size_t, latents<Real>&)> const after_step = [&](std::size_t step, latents<Real>& z) {
+            D.after_step(step, z);
+            result.z = z;
+        };
+        try {
+            sample(settings.sampler, denoise, latents<Real>(result.z), sigmas, after_step);
+        } catch (cancelled const&) {
+            result.is_cancelled = true;
+        }
+        return result;
+    }
 }
 
 } // namespace genrender

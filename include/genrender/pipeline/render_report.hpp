@@ -26,44 +26,48 @@ struct coverage_count {
     }
 };
 
-/// Filled in by a run; may be read when it has ended.
-class render_report {
-public:
+/// What a run tells when it has ended.
+struct render_report {
     /// Coverage of the blend by feature resolution.
-    std::map<grid_extents, coverage_count> const& coverage() const { return coverage_; }
+    std::map<grid_extents, coverage_count> coverage;
     /// Frames that latent normalisation skipped in some step, for want of background.
-    std::set<std::size_t> const& skipped_frames() const { return skipped_; }
-    /// Seconds by the clock on the wall in the denoiser, the attention that processors ask of it included, and in the
-    /// rest of the library: compiling geometry, noise, keyframes, blend plans, normalisation.
-    double denoiser_seconds() const { return denoiser_seconds_; }
-    double library_seconds() const { return library_seconds_; }
+    std::set<std::size_t> skipped_frames;
+    /// Seconds by the clock on the wall in the denoiser, the attention that processors ask of it included.
+    double denoiser_seconds = 0;
+    /// Seconds in the rest of the library: compiling geometry, noise, keyframes, blend plans, normalisation.
+    double library_seconds = 0;
     /// The vector target of the library's kernels when the run began.
-    genrender::vector_target vector_target() const { return vector_target_; }
+    vector_target kernels = vector_target::baseline;
+};
 
+/// Adds to a report from any thread.
+class report_writer {
+public:
+    /// Writes to `report`, which must outlive the writer.
+    explicit report_writer(render_report& report) : report_(&report) {}
+
+    /// Counts tokens of a frame at a feature resolution: those that show an object, and those that a plan covers.
     void add_coverage(grid_extents grid, std::size_t on_objects, std::size_t covered) {
         std::lock_guard const lock(mutex_);
-        auto& count = coverage_[grid];
+        auto& count = report_->coverage[grid];
         count.on_objects += on_objects;
         count.covered += covered;
     }
+    /// Adds frames that normalisation skipped.
     void add_skipped(std::vector<std::size_t> const& frames) {
         std::lock_guard const lock(mutex_);
-        skipped_.insert(frames.begin(), frames.end());
+        report_->skipped_frames.insert(frames.begin(), frames.end());
     }
-    void set_vector_target(genrender::vector_target target) { vector_target_ = target; }
+    /// Adds seconds in the denoiser and in the library.
     void add_seconds(double denoiser, double library) {
         std::lock_guard const lock(mutex_);
-        denoiser_seconds_ += denoiser;
-        library_seconds_ += library;
+        report_->denoiser_seconds += denoiser;
+        report_->library_seconds += library;
     }
 
 private:
     std::mutex mutex_;
-    std::map<grid_extents, coverage_count> coverage_;
-    std::set<std::size_t> skipped_;
-    genrender::vector_target vector_target_ = genrender::vector_target::baseline;
-    double denoiser_seconds_ = 0;
-    double library_seconds_ = 0;
+    render_report* report_;
 };
 
 } // namespace genrender

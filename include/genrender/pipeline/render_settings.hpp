@@ -8,6 +8,7 @@
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/correspondence/chosen_correspondence.hpp>
+#include <genrender/injection/injection_settings.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/noise/initial_noise.hpp>
 #include <genrender/normalization/adain.hpp>
@@ -44,18 +45,17 @@ struct render_settings {
     std::function<bool(attention_site const&, std::uint32_t branch)> layers = is_in_decoder;
     /// alpha of eq. 6, by step and site.
     std::function<Real(std::size_t step, attention_site const&)> alpha = [](std::size_t, attention_site const&) {
-        return Real(0.7);
+        return Real(paper_alpha);
     };
-    bool pre_attention = true;         ///< eq. 3 and 5; without it no frame attends to another
-    bool post_attention = true;        ///< eq. 6
-    bool keeps_own_copy = true;        ///< eq. 5 as written: a keyframe meets its own tokens twice
+    injection_settings injection;      ///< eq. 3, 5 and 6
     Real first_fill_share = Real(0.5); ///< of the inpainted texture in the unified one
     /// How the average texture weighs keyframes; plain is the paper's.
     texel_average average = texel_average::by_quality;
-    Real window_begin = 0; ///< first and
-    Real window_end = 1;   ///< last share of the steps with keyframes and injection, [begin, end)
+    /// Steps with keyframes and injection: those whose share step / steps lies in [window_begin, window_end).
+    Real window_begin = 0;
+    Real window_end = 1; ///< see window_begin
 
-    genrender::feature_storage feature_storage = genrender::feature_storage::same; ///< of keyframes
+    feature_storage keyframe_storage = feature_storage::same; ///< how features of keyframes are kept
     /// Whether a denoiser that can (residual_lender) keeps what the keyframe pass has computed of keyframes: the same
     /// frames to the bit in less time, for memory that memory_plan tells.
     bool reuses_keyframes = true;

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace genrender {
@@ -33,11 +34,11 @@ struct run_description {
     std::vector<std::size_t> surface_pixels;
     std::size_t calls_at_once = 1; ///< threads of the run's loop
     /// The most memory that a call of the denoiser takes: for each frame of its stack, features included, and besides.
-    /// 0 if unknown: then the features of the largest site alone are counted.
-    std::size_t network_bytes = 0;
-    std::size_t call_bytes = 0;
-    /// What a denoiser keeps of a keyframe to reuse it (residual_lender), a frame; 0 for one that does not.
-    std::size_t residual_bytes = 0;
+    /// None if unknown: then the features of the largest site alone are counted.
+    std::optional<std::size_t> network_bytes;
+    std::optional<std::size_t> call_bytes;
+    /// What a denoiser keeps of a keyframe to reuse it (residual_lender), a frame; none for one that does not.
+    std::optional<std::size_t> residual_bytes;
 };
 
 /// The description of a run of a denoiser on maps whose loop has so many threads. Reads the maps once.

@@ -45,36 +45,50 @@ public:
     sequence_denoiser(Phi const& phi, correspondence_set<Map> const& maps,
                       strided_view<std::uint8_t const, 3> background, std::span<real_type const> sigmas,
                       render_settings<real_type> const& settings, any_loop loop, progress_meter& meter,
-                      render_report& report, Method method = {})
+                      report_writer& report, Method method = {})
         : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, background_(background), sigmas_(sigmas),
           method_(std::move(method)) {}
 
-    /// The clean estimates of all frames of z [frames, channels, height, width]. Throws value_error if an estimate is
-    /// not finite, cancelled if the observer says so, and what the denoiser throws.
-    latents<real_type> operator()(latents<real_type> const& z, real_type sigma) const {
-        auto const step = step_at(sigmas_, sigma);
+    /// The clean estimates of all frames of z [frames, channels, height, width] at noise level sigmas[step]; a second
+    /// evaluation within a step, such as Heun's, is one of the step that begins at its level. Throws value_error if an
+    /// estimate is not finite, cancelled if the observer says so, and what the denoiser throws.
+    latents<real_type> operator()(latents<real_type> const& z, real_type sigma, std::size_t step) const {
         auto x0 = latents<real_type>::from_shape(z.shape());
         method_(sequence_passes<Phi, Map>(run_, x0, z, sigma, step));
         require_finite(x0, step);
         auto const& normalization = run_.settings->normalization;
-        if (normalization.enabled && !normalization.on_noisy_latents) {
+        if (!normalization.on_noisy_latents) {
             normalize(x0, step);
         }
         return x0;
     }
 
+    /// The same for samplers that do not tell the step, which is looked up by sigma.
+    latents<real_type> operator()(latents<real_type> const& z, real_type sigma) const {
+        return (*this)(z, sigma, step_at(sigmas_, sigma));
+    }
+
+    /// What the settings ask of the noisy latents after a step of the sampler: normalisation in place, where it is
+    /// theirs and not that of the clean estimates.
+    void after_step(std::size_t step, latents<real_type>& z) const {
+        if (run_.settings->normalization.on_noisy_latents) {
+            normalize(z, step);
+        }
+    }
+
+private:
     /// Normalises latents of the whole sequence in place where the settings' window holds `step` [GR sec. 3.4].
     void normalize(latents<real_type>& z, std::size_t step) const {
         using clock = std::chrono::steady_clock;
         auto const& normalization = run_.settings->normalization;
-        if (is_in_window(step, run_.settings->steps, normalization.window_begin, normalization.window_end)) {
+        if (normalization.enabled &&
+            is_in_window(step, run_.settings->steps, normalization.window_begin, normalization.window_end)) {
             auto const start = clock::now();
             run_.report->add_skipped(normalize_latents(to_view(z), background_, normalization));
             run_.report->add_seconds(0, std::chrono::duration<double>(clock::now() - start).count());
         }
     }
 
-private:
     /// Refuses estimates that would poison every later step.
     static void require_finite(latents<real_type> const& x0, std::size_t step) {
         auto const values = x0.size() / x0.shape()[0];

@@ -6,7 +6,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/plain_attention.hpp>
-#include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/blend_plans.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
@@ -21,9 +21,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <map>
-#include <memory>
 #include <mutex>
 #include <ranges>
 #include <span>
@@ -41,7 +38,7 @@ struct sequence_run {
     render_settings<typename Phi::real_type> const* settings;
     any_loop loop;
     progress_meter* meter;
-    render_report* report;
+    report_writer* report;
 };
 
 /// The passes over an animation at one noise level. A pass gives the denoiser stacks of frames with a processor, counts
@@ -51,9 +48,6 @@ class sequence_passes {
 public:
     using real_type = typename Phi::real_type;
     using features_type = typename Phi::features_type;
-    /// Rows of a frame's plan at a site.
-    using rows_of = std::function<sparse_rows<real_type>(site_index, frame_index)>;
-
     /// Reads z and writes the clean estimates x0, both [frames, channels, height, width]. Everything is referred to and
     /// must outlive the evaluation.
     sequence_passes(sequence_run<Phi, Map> const& run, latents<real_type>& x0, latents<real_type> const& z,
@@ -91,7 +85,7 @@ public:
         }
         auto bank = new_bank();
         auto const participates = [this](attention_place place) { return takes_part(place); };
-        recorder<features_type> const record(bank, participates, extended, settings().feature_storage);
+        recorder<features_type> const record(bank, participates, extended, settings().keyframe_storage);
         auto const begin = clock::now();
         run_keyframes(to_view(std::as_const(z_KF)), KF, record);
         auto const denoiser = seconds_since(begin);
@@ -116,29 +110,25 @@ public:
         }
     }
 
-    /// One plan per feature resolution and frame, each a blend_plan made by `make_plan(map, frame)`: F_bar^i = rows *
-    /// F_KF. The function keeps the plans.
+    /// One plan per feature resolution and frame, each a blend_plan made by `make_plan(map, frame)`.
     template <class MakePlan>
-    rows_of plan_rows(std::span<frame_index const> frames, MakePlan const& make_plan) const {
-        using plans_type = std::map<std::pair<grid_extents, frame_index>, blend_plan<real_type>>;
-        auto const plans = std::make_shared<plans_type>();
+    blend_plans<real_type> make_plans(std::span<frame_index const> frames, MakePlan const& make_plan) const {
+        std::vector<grid_extents> grid_of_site;
+        for (auto const& site : run_->phi->sites()) {
+            grid_of_site.push_back(site.grid);
+        }
+        blend_plans<real_type> plans(std::move(grid_of_site));
         for (auto const& [grid, map] : *run_->maps) {
             for (auto const frame : frames) {
-                plans->emplace(std::pair(grid, frame), make_plan(map, frame));
+                plans.add(grid, frame, make_plan(map, frame));
             }
         }
-        return [phi = run_->phi, plans](site_index site, frame_index frame) {
-            return plans->at({phi->sites()[site.value].grid, frame}).rows();
-        };
+        return plans;
     }
 
-    /// Tells the report that a plan covers `covered` of the tokens of a frame that show an object.
-    void report_coverage(Map const& map, frame_index frame, std::size_t covered) const {
-        std::size_t on_objects = 0;
-        for (std::uint32_t t = 0; t < grid_extents(map.grid()).size(); ++t) {
-            on_objects += map.point_at(frame, {t}).has_value() ? 1U : 0U;
-        }
-        run_->report->add_coverage(map.grid(), on_objects, covered);
+    /// Tells the report that a plan covers `covered` of the tokens of a frame at a grid that show an object.
+    void report_coverage(grid_extents grid, frame_index frame, std::size_t covered) const {
+        run_->report->add_coverage(grid, run_->maps->tokens_on_objects(grid, frame), covered);
     }
 
     /// z^i <- Phi(z^i, D^i, c) for every frame, `settings().frames_per_call` at once, with the processor that

@@ -26,7 +26,9 @@ public:
           to_v_(source, name + ".to_v", source_channels, channels, false),
           to_out_(source, name + ".to_out.0", channels, channels) {}
 
+    /// Number of attention heads.
     std::size_t heads() const { return heads_; }
+    /// Channels of the queries, all heads together.
     std::size_t channels() const { return to_q_.out_channels(); }
 
     /// Q = W^Q f [tokens, channels] for f [tokens, channels].

@@ -40,6 +40,7 @@ public:
         }
     }
 
+    /// Path of the file that it was read from.
     std::string const& path() const { return path_; }
 
     /// The value of an option as it stands there, null if it does not.

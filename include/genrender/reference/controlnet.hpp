@@ -81,6 +81,9 @@ public:
                                   std::vector<feature_maps<Real> const*> const& hints, Real scale = 1) const {
         require_extents("controlnet", "hints", std::array{hints.size()}, std::array{z.frames()});
         auto result = encoder_(pass, z, t, hints);
+        if (pass.is_over) {
+            return result;
+        }
         for (std::size_t s = 0; s < result.skips.size(); ++s) {
             project(pass, result.skips[s], down_blocks_[s], scale);
         }

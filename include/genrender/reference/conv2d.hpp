@@ -39,7 +39,9 @@ public:
         bias_ = source.take(name + ".bias", {out});
     }
 
+    /// Channels that it takes.
     std::size_t in_channels() const { return in_; }
+    /// Channels that it gives.
     std::size_t out_channels() const { return bias_.size(); }
     /// Of each output channel.
     std::span<Real const> bias() const { return bias_; }

@@ -25,7 +25,7 @@ class embedded_hints {
 public:
     /// Embeddings of the frames of a call; those that are kept are pointed to.
     struct of_call {
-        std::vector<feature_maps<Real>> made;
+        std::vector<feature_maps<Real>> made;         ///< those that are not kept, made for this call
         std::vector<feature_maps<Real> const*> hints; ///< one a frame
     };
 
@@ -48,6 +48,7 @@ public:
         }
     }
 
+    /// Number of frames.
     std::size_t frame_count() const { return frames_; }
     /// Number of frames whose embedding is kept.
     std::size_t kept_count() const { return kept_.size(); }

@@ -25,8 +25,8 @@ class encoded_frames {
 public:
     /// Of one branch: the maps, and the embedding of time that the decoder takes beside them.
     struct of_branch {
-        encoded_maps<Real> maps;
-        std::vector<Real> time;
+        encoded_maps<Real> maps; ///< what the encoder gives
+        std::vector<Real> time;  ///< embedding of time
     };
 
     encoded_frames() = default;

@@ -25,14 +25,20 @@ struct feature_maps {
     feature_maps(std::size_t frames, grid_extents grid, std::size_t channels)
         : values(stack<Real, 4>::uninitialized({frames, grid.height, grid.width, channels})) {}
 
+    /// Number of entries of the stack.
     std::size_t frames() const { return values.extent(0); }
+    /// Height and width of a map.
     grid_extents grid() const { return {values.extent(1), values.extent(2)}; }
+    /// Channels of a token.
     std::size_t channels() const { return values.extent(3); }
 
+    /// The maps as features [frames, tokens, channels].
     strided_view<Real, 3> view() { return {values.data(), {frames(), grid().size(), channels()}}; }
+    /// The maps as features [frames, tokens, channels].
     strided_view<Real const, 3> view() const { return {values.data(), {frames(), grid().size(), channels()}}; }
     /// Features of entry i of the stack [tokens, channels].
     strided_view<Real, 2> operator[](std::size_t i) { return view()[i]; }
+    /// Features of entry i of the stack [tokens, channels].
     strided_view<Real const, 2> operator[](std::size_t i) const { return view()[i]; }
 
     /// The same memory as the engine's outside writes it [frames, channels, height, width]; copies nothing.

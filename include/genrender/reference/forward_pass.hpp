@@ -16,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -27,8 +28,10 @@ namespace genrender::reference {
 template <class Real>
 class any_processor {
 public:
+    /// What the network's modules hand to a processor.
     using call_type = host_attention_call<Real, attention_matrices<Real>>;
 
+    /// Refers to any attention processor, which has to outlive this.
     template <class Processor>
         requires(!std::is_same_v<std::remove_const_t<Processor>, any_processor>)
     any_processor(Processor& processor)
@@ -42,7 +45,9 @@ public:
                       "reference_network: the processor does not model attention_processor");
     }
 
+    /// Runs the processor.
     host_features<Real> operator()(call_type& call) const { return run_(processor_, call); }
+    /// What genrender::is_plain_at tells of the processor.
     bool is_plain_at(attention_place place) const { return is_plain_at_(processor_, place); }
 
 private:
@@ -61,6 +66,10 @@ struct forward_pass {
     any_processor<Real> processor;       ///< runs at the self-attention sites
     any_loop loop{};                     ///< over frames
     std::vector<Real> time{};            ///< of the network's time_embedding, after SiLU [time_channels]
+    /// The last site that is wanted; none runs the whole network.
+    std::optional<site_index> last_site{};
+    /// Whether the last wanted site has run: layers then return at once, with results that nobody reads.
+    mutable bool is_over = false;
 
     /// Calls `body(i)` for every entry of the stack.
     void each_frame(loop_body body) const {

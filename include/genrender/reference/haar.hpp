@@ -16,7 +16,12 @@
 namespace genrender::reference {
 
 /// Bands of the transform.
-enum class haar_band : std::size_t { mean, left_right, top_bottom, diagonal };
+enum class haar_band : std::size_t {
+    mean,       ///< half the sum of a square of 2 x 2 pixels
+    left_right, ///< half of its left pixels less its right ones
+    top_bottom, ///< half of its upper pixels less its lower ones
+    diagonal    ///< half of its upper left and lower right pixels less the other two
+};
 
 namespace internal {
 

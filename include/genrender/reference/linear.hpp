@@ -28,7 +28,9 @@ public:
         return {source, name, {out, in, 1, 1}, true};
     }
 
+    /// Channels that it takes.
     std::size_t in_channels() const { return weights_.inputs(); }
+    /// Channels that it gives.
     std::size_t out_channels() const { return weights_.outputs(); }
 
     /// Writes in W^T + b [tokens, out] for `in` [tokens, in]; rows of both contiguous. Tokens are shared out over

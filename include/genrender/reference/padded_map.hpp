@@ -19,6 +19,7 @@ template <class Real>
 struct padded_map {
     stack<Real, 3> tokens; ///< [1 + height + 1, 1 + width + 1, channels]
 
+    /// A map whose ring of zeros is written and whose tokens are not yet.
     padded_map(grid_extents grid, std::size_t channels)
         : tokens(stack<Real, 3>::uninitialized({grid.height + 2, grid.width + 2, channels})) {
         std::fill_n(tokens.data(), row_stride(), Real{0});
@@ -38,12 +39,15 @@ struct padded_map {
         }
     }
 
+    /// Height and width without the ring.
     grid_extents grid() const { return {tokens.extent(0) - 2, tokens.extent(1) - 2}; }
+    /// Channels of a token.
     std::size_t channels() const { return tokens.extent(2); }
     /// Numbers from one row of the map to the next.
     std::size_t row_stride() const { return tokens.extent(1) * channels(); }
     /// The tokens of row y of the map side by side.
     Real* row(std::size_t y) { return tokens.data() + (y + 1) * row_stride() + channels(); }
+    /// The tokens of row y of the map side by side.
     Real const* row(std::size_t y) const { return tokens.data() + (y + 1) * row_stride() + channels(); }
     /// The first zero of the ring, above and left of the map.
     Real const* corner() const { return tokens.data(); }

@@ -37,7 +37,7 @@ namespace genrender::reference {
 template <std::floating_point Real>
 class reference_embedder {
 public:
-    using real_type = Real;
+    using real_type = Real; ///< type of an embedding's numbers
 
     /// Takes `image.blocks.N.conv`, `image.blocks.N.norm`, `image.projection`, `text.embedding.weight` [1 + words,
     /// dimension] and `text.projection`. Throws file_error if one is missing, misshapen or of no use.
@@ -70,6 +70,7 @@ public:
         return reference_embedder(source, std::move(words), dimension);
     }
 
+    /// Length of an embedding.
     std::size_t dimension() const { return embedding_.extent(1); }
     /// The words it knows.
     std::vector<std::string> const& words() const { return words_; }

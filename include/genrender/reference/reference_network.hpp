@@ -13,7 +13,6 @@
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/reference_weights.hpp>
-#include <genrender/reference/stopping_processor.hpp>
 #include <genrender/reference/unet.hpp>
 #include <genrender/sampling/classifier_free_guidance.hpp>
 #include <genrender/sampling/denoiser.hpp>
@@ -41,9 +40,9 @@ namespace genrender::reference {
 template <std::floating_point Real>
 class reference_network {
 public:
-    using real_type = Real;
-    using features_type = host_features<Real>;
-    using residuals_type = encoded_frames<Real>;
+    using real_type = Real;                      ///< float or double, in which it computes
+    using features_type = host_features<Real>;   ///< features in host memory
+    using residuals_type = encoded_frames<Real>; ///< what the encoder leaves to the decoder
 
     /// Takes the weights of both networks (those of Stable Diffusion 1.5 and its ControlNet in diffusers' layout fit,
     /// as do weights<Real>::seeded). Throws value_error if the config cannot be built, the latents' grid cannot be
@@ -91,9 +90,13 @@ public:
         return {source, source.conditioning(inverse_depth, prompt, guidance_scale), std::move(loop)};
     }
 
+    /// The architecture that its weights are for.
     unet_config const& config() const { return config_; }
+    /// Channels of a latent.
     std::size_t latent_channels() const { return config_.in_channels; }
+    /// Height and width of a latent.
     grid_extents latent_grid() const { return latent_grid_; }
+    /// Its self-attention modules, in the order in which they run.
     std::span<attention_site const> sites() const { return sites_; }
     /// 1 with a guidance scale of 1, else 2: the empty prompt, then the prompt.
     std::size_t branches() const { return conditioning_.guidance_scale == 1 ? 1 : 2; }
@@ -150,17 +153,16 @@ public:
             if (!last[branch]) {
                 continue;
             }
-            internal::stopping_processor<Real> const stopping{processor, *last[branch]};
-            auto pass = pass_of(branch, in, stopping);
-            try {
-                auto encoded = encode(pass, in);
-                if (lent != nullptr && is_plain_before_decoder(processor, branch)) {
-                    lent->put(branch, {encoded, pass.time});
-                }
-                unet_->decode(pass, std::move(encoded));
-            } catch (internal::last_site_has_run const&) {
-                // As asked.
+            auto pass = pass_of(branch, in, processor);
+            pass.last_site = last[branch];
+            auto encoded = encode(pass, in);
+            if (pass.is_over) {
+                continue;
             }
+            if (lent != nullptr && is_plain_before_decoder(processor, branch)) {
+                lent->put(branch, {encoded, pass.time});
+            }
+            unet_->decode(pass, std::move(encoded));
         }
     }
 
@@ -242,7 +244,10 @@ private:
         if (!in.hints) {
             in.hints = hints_.at(in.frames, loop_);
         }
-        auto const control = (*control_)(pass, in.scaled, in.t, in.hints->hints, conditioning_.conditioning_scale);
+        auto control = (*control_)(pass, in.scaled, in.t, in.hints->hints, conditioning_.conditioning_scale);
+        if (pass.is_over) {
+            return control;
+        }
         return unet_->encode(pass, in.scaled, in.t, &control);
     }
 

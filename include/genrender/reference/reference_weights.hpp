@@ -26,9 +26,9 @@ namespace genrender::reference {
 /// The weights of the networks and what is needed to build them.
 template <std::floating_point Real>
 struct reference_weights {
-    unet_config config;
-    weights<Real> unet;
-    weights<Real> controlnet;
+    unet_config config;                                ///< what both networks are built from
+    weights<Real> unet;                                ///< of the denoising network
+    weights<Real> controlnet;                          ///< of the ControlNet
     std::optional<prompt_vocabulary<Real>> vocabulary; ///< none if the text encoder is not of this kind
 
     /// Random weights of any architecture, the same for the same seed; words are prompt_words.

@@ -42,6 +42,7 @@ public:
     downsampler(weights<Real>& source, std::string const& name, std::size_t channels)
         : conv_(source, name + ".conv", channels, channels, 3, 2) {}
 
+    /// Maps of half the height and width, of as many channels.
     feature_maps<Real> operator()(forward_pass<Real> const& pass, feature_maps<Real> const& x) const {
         auto result = pass.maps(conv_.out_grid(x.grid()), x.channels());
         pass.each_frame([&](std::size_t i) { conv_(result[i], x[i], x.grid(), pass.tokens()); });
@@ -60,6 +61,7 @@ public:
     upsampler(weights<Real>& source, std::string const& name, std::size_t channels)
         : conv_(source, name + ".conv", channels, channels) {}
 
+    /// Maps of twice the height and width, of as many channels.
     feature_maps<Real> operator()(forward_pass<Real> const& pass, feature_maps<Real> const& x) const {
         grid_extents const grid{2 * x.grid().height, 2 * x.grid().width};
         auto result = pass.maps(grid, x.channels());

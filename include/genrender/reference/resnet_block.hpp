@@ -41,6 +41,7 @@ public:
         }
     }
 
+    /// Channels that it gives.
     std::size_t out_channels() const { return conv2_.out_channels(); }
 
     /// The block's output [frames, tokens, out] on the grid of x.

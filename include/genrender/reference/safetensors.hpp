@@ -93,6 +93,7 @@ public:
         check_layout(file_bytes - data_begin_);
     }
 
+    /// Path of the file that it was read from.
     std::string const& path() const { return path_; }
     /// All tensors by name, those of types that cannot be read included.
     std::map<std::string, safetensors_entry> const& entries() const { return entries_; }
@@ -242,12 +243,15 @@ private:
 
 /// A tensor to be written: row-major elements of the given shape.
 struct safetensors_source {
-    std::vector<std::size_t> shape;
-    std::span<float const> values;
+    std::vector<std::size_t> shape; ///< extents of its axes
+    std::span<float const> values;  ///< its elements; not owned
 };
 
 /// How a tensor's elements are stored.
-enum class safetensors_storage { f32, f16 };
+enum class safetensors_storage {
+    f32, ///< as they are
+    f16  ///< rounded to the nearest of IEEE binary16
+};
 
 /// Writes the tensors in the order of their names, data aligned to 8 bytes. Throws shape_error if values do not fill
 /// their shape, file_error if the file cannot be written.

@@ -32,6 +32,7 @@ public:
         return {static_cast<std::uint32_t>(sites_.size() - 1)};
     }
 
+    /// The sites added so far, in order.
     std::span<attention_site const> sites() const { return sites_; }
 
 private:

@@ -43,6 +43,9 @@ public:
         });
         for (auto const& block : blocks_) {
             block(pass, h);
+            if (pass.is_over) {
+                return;
+            }
         }
         pass.each_frame([&](std::size_t i) { proj_out_.add_to(x[i], h[i], pass.tokens()); });
     }

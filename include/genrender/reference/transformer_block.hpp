@@ -60,6 +60,9 @@ public:
     /// extents.
     void operator()(forward_pass<Real> const& pass, feature_maps<Real>& h) const {
         attend_to_features(pass, h);
+        if (pass.is_over) {
+            return;
+        }
 
         // The prompt is the same for all frames.
         stack<Real, 2> K({pass.prompt.extent(0), h.channels()});
@@ -94,6 +97,7 @@ private:
         pass.each_frame([&](std::size_t i) { norm1_(f.view()[i], h[i]); });
         typename any_processor<Real>::call_type call({site_, pass.branch}, pass.frames, f, attn1_, pass.loop);
         auto const F = pass.processor(call);
+        pass.is_over = pass.last_site == site_;
         require_extents("transformer_block", "F", F.extents(), f.extents());
         pass.each_frame([&](std::size_t i) {
             stack<Real, 2> storage;

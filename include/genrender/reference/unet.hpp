@@ -58,6 +58,9 @@ public:
             h = resnets_[i](pass, joined);
             if (!attentions_.empty()) {
                 attentions_[i](pass, h);
+                if (pass.is_over) {
+                    return h;
+                }
             }
         }
         return upsampler_ ? (*upsampler_)(pass, h) : std::move(h);
@@ -98,7 +101,7 @@ public:
     encoded_maps<Real> encode(forward_pass<Real>& pass, feature_maps<Real> const& z, Real t,
                               encoded_maps<Real> const* control = nullptr) const {
         auto encoded = encoder_(pass, z, t);
-        if (control != nullptr) {
+        if (control != nullptr && !pass.is_over) {
             auto& skips = encoded.skips;
             require_extents("unet", "control", std::array{control->skips.size()}, std::array{skips.size()});
             for (std::size_t s = 0; s < skips.size(); ++s) {
@@ -115,6 +118,9 @@ public:
         auto h = std::move(encoded.middle);
         for (auto const& block : up_blocks_) {
             h = block(pass, std::move(h), skips);
+            if (pass.is_over) {
+                return h;
+            }
         }
         auto result = pass.maps(h.grid(), conv_out_.out_channels());
         pass.each_frame([&](std::size_t i) {

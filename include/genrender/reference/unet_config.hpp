@@ -37,6 +37,7 @@ struct unet_config {
     double beta_start = 0.00085;                       ///< of scaled_linear_alphas_cumprod
     double beta_end = 0.012;                           ///< of scaled_linear_alphas_cumprod
 
+    /// Number of resolutions.
     std::size_t levels() const { return block_out_channels.size(); }
     /// Channels of the embedding of time, 4 * block_out_channels[0].
     std::size_t time_channels() const { return 4 * block_out_channels.front(); }

@@ -60,6 +60,9 @@ public:
                 attentions_[i](pass, h);
             }
             skips.push_back(std::move(h));
+            if (pass.is_over) {
+                return;
+            }
         }
         if (downsampler_) {
             skips.push_back((*downsampler_)(pass, skips.back()));
@@ -105,9 +108,15 @@ public:
         result.skips.push_back(std::move(h));
         for (auto const& block : down_blocks_) {
             block(pass, result.skips);
+            if (pass.is_over) {
+                return result;
+            }
         }
         result.middle = mid_resnets_[0](pass, result.skips.back());
         (*mid_attention_)(pass, result.middle);
+        if (pass.is_over) {
+            return result;
+        }
         result.middle = mid_resnets_[1](pass, result.middle);
         return result;
     }

@@ -20,13 +20,13 @@ namespace genrender::reference {
 /// numbers after `first`, and are `runs` runs of `run_length` neighbouring numbers, run_stride apart.
 template <class Real>
 struct token_inputs {
-    Real const* first;
-    std::size_t width;
-    std::ptrdiff_t token_stride;
-    std::ptrdiff_t row_stride;
-    std::size_t runs;
-    std::size_t run_length;
-    std::ptrdiff_t run_stride;
+    Real const* first;           ///< first number of the first token
+    std::size_t width;           ///< tokens in a row
+    std::ptrdiff_t token_stride; ///< numbers from a token to the next in its row
+    std::ptrdiff_t row_stride;   ///< numbers from a row's first token to the next row's
+    std::size_t runs;            ///< runs that a token's numbers are of
+    std::size_t run_length;      ///< numbers of a run
+    std::ptrdiff_t run_stride;   ///< numbers from a run to the next
 
     /// Of a matrix [tokens, inputs] with contiguous rows.
     static token_inputs rows_of(strided_view<Real const, 2> const& in) {
@@ -93,7 +93,9 @@ public:
         }
     }
 
+    /// Numbers of a token that it takes.
     std::size_t inputs() const { return inputs_; }
+    /// Numbers of a token that it gives.
     std::size_t outputs() const { return outputs_; }
 
     /// Writes the product with the inputs of each token, and what is added to it, into `out` [tokens, outputs], whose

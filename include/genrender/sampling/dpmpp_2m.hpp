@@ -47,7 +47,7 @@ Latents dpmpp_2m(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after
     for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
         Real const sigma = sigmas[i];
         Real const sigma_next = sigmas[i + 1];
-        Latents x0 = D(std::as_const(z), sigma);
+        Latents x0 = detail::estimate<Latents>(D, z, sigmas, i);
         // The step of alg. 2, (sigma_next / sigma) z - (exp(-h) - 1) x0 with h = log(sigma / sigma_next), is
         // Euler's: what makes it second order is that the clean estimate is extrapolated in log sigma to the
         // middle of the step.

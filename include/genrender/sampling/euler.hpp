@@ -59,7 +59,7 @@ template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = n
 Latents euler(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
     require_noise_levels("euler", sigmas);
     for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
-        Latents const x0 = D(std::as_const(z), sigmas[i]);
+        Latents const x0 = detail::estimate<Latents>(D, z, sigmas, i);
         detail::write_euler_step(z, z, x0, sigmas[i], sigmas[i + 1]);
         after_step(i, z);
     }

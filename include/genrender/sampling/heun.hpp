@@ -47,10 +47,10 @@ Latents heun(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_ste
     for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
         Real const sigma = sigmas[i];
         Real const sigma_next = sigmas[i + 1];
-        Latents const x0 = D(std::as_const(z), sigma);
+        Latents const x0 = detail::estimate<Latents>(D, z, sigmas, i);
         if (sigma_next > 0) {
             detail::write_euler_step(z_euler, z, x0, sigma, sigma_next);
-            Latents const x0_next = D(std::as_const(z_euler), sigma_next);
+            Latents const x0_next = detail::estimate<Latents>(D, z_euler, sigmas, i + 1);
             detail::take_mean_step(z, x0, z_euler, x0_next, sigma, sigma_next);
         } else {
             detail::write_euler_step(z, z, x0, sigma, sigma_next);

@@ -40,19 +40,29 @@ Latents sample(sampler_kind sampler, Denoise&& D, Latents z, Sigmas const& sigma
                       ", expected euler, heun or dpmpp_2m");
 }
 
+/// How often a run evaluates D at its noise level i, counted from 0, above level 0. Throws value_error for a value that
+/// names no sampler.
+inline std::size_t evaluations_at(sampler_kind sampler, std::size_t i) {
+    switch (sampler) {
+    case sampler_kind::euler:
+    case sampler_kind::dpmpp_2m:
+        return 1;
+    case sampler_kind::heun: // The step before ends where this one begins.
+        return i == 0 ? 1 : 2;
+    }
+    throw value_error("evaluations: sampler is " + std::to_string(static_cast<int>(sampler)) +
+                      ", expected euler, heun or dpmpp_2m");
+}
+
 /// How often a run of `steps` steps that ends at level 0, such as karras_schedule(steps), evaluates D. Throws
 /// value_error for 0 steps or a value that names no sampler.
 inline std::size_t evaluations(sampler_kind sampler, std::size_t steps) {
     require_value(steps >= 1, "evaluations", "steps", steps, "at least 1");
-    switch (sampler) {
-    case sampler_kind::euler:
-    case sampler_kind::dpmpp_2m:
-        return steps;
-    case sampler_kind::heun:
-        return 2 * steps - 1;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < steps; ++i) {
+        count += evaluations_at(sampler, i);
     }
-    throw value_error("evaluations: sampler is " + std::to_string(static_cast<int>(sampler)) +
-                      ", expected euler, heun or dpmpp_2m");
+    return count;
 }
 
 } // namespace genrender

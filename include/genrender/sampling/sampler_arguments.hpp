@@ -31,12 +31,44 @@ concept noise_levels = requires(Sigmas const& sigmas, std::size_t i) {
 template <noise_levels Sigmas>
 using level_type = std::remove_cvref_t<decltype(std::declval<Sigmas const&>()[std::size_t{}])>;
 
-/// What a sampler follows: `D(z, sigma)` is the clean estimate of latents z = x0 + sigma n. z is a whole animation;
-/// nothing here knows of frames.
+/// A clean estimator that is told at which of the run's noise levels it is, an optional capability: one without it is
+/// told the level's sigma alone.
+///
+/// expression       | type    | meaning
+/// -----------------|---------|----------------------------------------------------------------------------------------
+/// `D(z, sigma, i)` | Latents | the clean estimate of z at level i of the run, sigma = sigmas[i]
 template <class Denoise, class Latents, class Real>
-concept clean_estimator = requires(Denoise& D, Latents const& z, Real sigma) {
+concept level_estimator = requires(Denoise& D, Latents const& z, Real sigma, std::size_t level) {
+    { D(z, sigma, level) } -> std::convertible_to<Latents>;
+};
+
+/// What a sampler follows.
+///
+/// expression    | type    | meaning
+/// --------------|---------|-------------------------------------------------------------------------------------------
+/// `D(z, sigma)` | Latents | the clean estimate x0 of latents z = x0 + sigma n
+///
+/// z is a whole animation, which is not changed; nothing here knows of frames. D need not be const. The library's
+/// samplers call `D(z, sigma, i)` where D is a level_estimator, and a D that is one needs no `D(z, sigma)`.
+template <class Denoise, class Latents, class Real>
+concept clean_estimator = level_estimator<Denoise, Latents, Real> ||
+    requires(Denoise& D, Latents const& z, Real sigma) {
     { D(z, sigma) } -> std::convertible_to<Latents>;
 };
+
+namespace detail {
+
+/// The clean estimate of z at level i of a run.
+template <class Latents, class Denoise, class Sigmas>
+Latents estimate(Denoise& D, Latents const& z, Sigmas const& sigmas, std::size_t i) {
+    if constexpr (level_estimator<Denoise, Latents, level_type<Sigmas>>) {
+        return D(z, sigmas[i], i);
+    } else {
+        return D(z, sigmas[i]);
+    }
+}
+
+} // namespace detail
 
 /// The default after_step of the samplers: does nothing.
 struct nothing_after_step {

@@ -22,15 +22,15 @@ namespace genrender {
 /// One object in one frame. Its triangles and UVs are shared with every other frame; only positions are the frame's
 /// own.
 struct posed_object {
-    object_index object;
+    object_index object;                 ///< the number that its pixels get
     std::shared_ptr<mesh const> surface; ///< triangles and UVs; its positions are the rest pose
     std::vector<glm::vec3> positions;    ///< world space, this frame; one for each of the surface's
 };
 
 /// All that one frame shows, and the eye it is seen by.
 struct posed_scene {
-    genrender::camera camera;
-    std::vector<posed_object> objects;
+    genrender::camera camera;          ///< the eye that sees the objects
+    std::vector<posed_object> objects; ///< in any order
 };
 
 /// `positions` moved by an affine transform.

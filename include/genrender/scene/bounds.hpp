@@ -16,9 +16,10 @@ namespace genrender {
 
 /// All points p with lower <= p <= upper on each axis.
 struct bounds {
-    glm::vec3 lower{0};
-    glm::vec3 upper{0};
+    glm::vec3 lower{0}; ///< least of each coordinate
+    glm::vec3 upper{0}; ///< greatest of each coordinate
 
+    /// The middle of the box.
     glm::vec3 centre() const { return (lower + upper) * 0.5f; }
     /// Radius of the sphere around the box.
     float radius() const { return glm::length(upper - lower) * 0.5f; }

@@ -21,15 +21,18 @@ namespace genrender {
 
 /// What a scene gives to the generator: where every pixel lies on its object's texture, and how far away it is.
 struct rendered_guidance {
-    uv_maps uv;
-    depth_maps depth;
+    uv_maps uv;       ///< texture coordinates, object and coverage of every pixel
+    depth_maps depth; ///< distance and coverage of every pixel
     /// Where every pixel lies on its object at rest, in the mesh's units [frames, height, width, 3]; without frames
     /// unless position_pass::on.
     tensor<float, 4> position = tensor<float, 4>::from_shape({0, 0, 0, 3});
 };
 
 /// Whether the rasteriser also writes rest positions.
-enum class position_pass : std::uint8_t { off, on };
+enum class position_pass : std::uint8_t {
+    off, ///< UV and depth maps alone
+    on   ///< rest positions too
+};
 
 /// The rest positions of `guidance` as canonical maps. Throws shape_error if they were not written.
 inline position_maps_view to_position_view(rendered_guidance const& guidance) {

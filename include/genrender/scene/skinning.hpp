@@ -25,8 +25,8 @@ namespace genrender {
 
 /// How much of each of up to four joints a vertex follows; unused places have weight 0.
 struct joint_weights {
-    glm::uvec4 joints{0};
-    glm::vec4 weights{0};
+    glm::uvec4 joints{0}; ///< positions in the skeleton
+    glm::vec4 weights{0}; ///< shares, which sum to 1
 };
 
 /// Joints in an order in which parents come before their children.
@@ -34,6 +34,7 @@ struct skeleton {
     std::vector<std::optional<std::uint32_t>> parents; ///< nothing for a root
     std::vector<glm::mat4> rest;                       ///< each joint's space to its parent's, in the rest pose
 
+    /// Number of joints.
     std::size_t joint_count() const { return parents.size(); }
 };
 

@@ -11,6 +11,7 @@
 #include <genrender/pipeline/render.hpp>
 #include <genrender/pipeline/render_report.hpp>
 #include <genrender/pipeline/render_settings.hpp>
+#include <genrender/sampling/sampler.hpp>
 #include <genrender/testing/law_report.hpp>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace genrender::testing {
 
@@ -41,17 +43,18 @@ check_sequence_method_laws(Method const& method, Phi const& phi, Maps const& map
     std::map<std::size_t, std::size_t> frames;
     std::size_t before = 0;
     progress last;
-    render_report of_run;
-    report.z = render(method, phi, maps, settings, of_run, [&](progress const& now) {
+    auto const observe = [&](progress const& now) {
         auto const is_same_pass = last.step == now.step && last.pass == now.pass && now.frames_done > before;
         auto& count = now.pass == render_pass::keyframes ? keyframes[now.step] : frames[now.step];
         count += now.frames_done - (is_same_pass ? before : 0);
         before = now.frames_done;
         last = now;
         return true;
-    });
+    };
+    auto run = render<Method>(phi, maps, {.settings = settings, .method = method, .observer = observe});
+    report.z = std::move(run.z);
     for (std::size_t step = 0; step < settings.steps; ++step) {
-        std::size_t const evaluations = settings.sampler == sampler_kind::heun && step > 0 ? 2 : 1;
+        auto const evaluations = evaluations_at(settings.sampler, step);
         auto const in_step = " in step " + std::to_string(step);
         report.require(frames[step] == evaluations * N, "sequence_method: every evaluation denoises every frame once",
                        std::to_string(frames[step]) + " frames" + in_step, std::to_string(evaluations * N));
@@ -66,17 +69,17 @@ check_sequence_method_laws(Method const& method, Phi const& phi, Maps const& map
     // Estimates depend neither on the loop nor on how many frames are denoised at once, nor on the runs before.
     for (auto const frames_per_call : {std::size_t{1}, std::size_t{2}, N, std::numeric_limits<std::size_t>::max()}) {
         settings.frames_per_call = frames_per_call;
-        render_report again;
-        auto const same = render(method, phi, maps, settings, again, {}, threaded_loop(2));
+        auto const again =
+            render<Method>(phi, maps, {.settings = settings, .method = method, .loop = threaded_loop(2)});
         auto const with = "with " + std::to_string(frames_per_call) + " frames a call on two threads";
-        report.require(std::equal(report.z.begin(), report.z.end(), same.begin(), same.end()),
+        report.require(std::equal(report.z.begin(), report.z.end(), again.z.begin(), again.z.end()),
                        "sequence_method: estimates depend neither on the loop nor on frames_per_call",
                        "other latents " + with, "the same");
-        auto is_same_coverage = again.coverage().size() == of_run.coverage().size();
-        for (auto const& [grid, count] : of_run.coverage()) {
-            auto const found = again.coverage().find(grid);
+        auto is_same_coverage = again.report.coverage.size() == run.report.coverage.size();
+        for (auto const& [grid, count] : run.report.coverage) {
+            auto const found = again.report.coverage.find(grid);
             is_same_coverage =
-                is_same_coverage && found != again.coverage().end() && found->second.covered == count.covered;
+                is_same_coverage && found != again.report.coverage.end() && found->second.covered == count.covered;
         }
         report.require(is_same_coverage, "sequence_method: coverage depends neither on the loop nor on frames_per_call",
                        "another coverage " + with, "the same");

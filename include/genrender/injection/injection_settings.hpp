@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// [GR sec. 4: Ablation studies] What of the keyframes is injected into the other frames.
+#pragma once
+
+#include <genrender/core/begin_header.inl>
+
+namespace genrender {
+
+/// alpha of eq. 6 in the paper's experiments: the share of the blended features in F_out.
+inline constexpr double paper_alpha = 0.7;
+
+/// The switches of injection; each is an ablation of the paper.
+struct injection_settings {
+    bool pre_attention = true;  ///< eq. 5, and eq. 3 among keyframes; without it a frame attends to itself alone
+    bool post_attention = true; ///< eq. 6; without it F_out = F_hat
+    /// A frame that is itself a keyframe finds its tokens twice in [f^i, f_KF], as eq. 5 has it; false drops the second
+    /// copy.
+    bool keeps_own_copy = true;
+};
+
+} // namespace genrender
+
+#include <genrender/core/end_header.inl>
