@@ -20,7 +20,7 @@ string(REPLACE "[GR eq. 4]" "[GR eq. 1, GR eq. 2, GR eq. 3, GR eq. 4, GR eq. 5, 
 string(APPEND readme "\n```cpp\nauto a = b[0];\n```\n\n[Pages](docs/README.md), [an option](docs/program.md#the-options-all).\n\n\
 | room | holds |\n|---|---|\n")
 foreach(room IN ITEMS core maps correspondence noise attention sampling keyframes blending injection normalization pipeline
-    baselines scene reference)
+    baselines testing scene reference)
     string(APPEND readme "| `${room}` | [f; g) |\n")
 endforeach()
 string(APPEND test "}\n")
@@ -72,7 +72,7 @@ genrender_test_room(testing thing_laws)\ngenrender_test_room(testing mesh_laws N
     // docs:begin story\n    auto a = b[0];\n    // docs:end\n}\n")
     file(WRITE ${COPY}/examples/support/render_options.hpp "// SPDX-License-Identifier: MIT\n// Options.\n\
 add(\"--speed\");\n")
-    file(WRITE ${COPY}/docs/README.md "# Pages\n\n- [The program](program.md)\n- [Moving](moving_from_0_1_to_0_2.md#new)\n\n\
+    file(WRITE ${COPY}/docs/README.md "# Pages\n\n- [The program](program.md)\n- [Moving](moving_from_0_1_to_0_2.md#new)\n- [Points](customisation_points.md)\n\n\
 <!-- table build/t.md -->\n| a |\n|---|\n| 1; [2 |\n")
     file(WRITE ${COPY}/docs/program.md "# Program\n\n## The `options`, all\n\n| option |\n|---|\n| `--speed N` |\n\n\
 ```cpp\nauto a = b[0];\n```\n\nSee [above](#program), `[no](link)`, [a folder](../examples) and [far](https://example.org).\n\n\
