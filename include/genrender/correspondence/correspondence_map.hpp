@@ -71,6 +71,7 @@ consteval void require_correspondence_map() {
 
 /// The least that a visitor of weighted tokens is, for checking maps; never run.
 struct token_visitor_archetype {
+    /// Takes a token that shows the point and its share.
     void operator()(token_index token, double weight) const;
 };
 

@@ -19,18 +19,22 @@ namespace genrender::testing {
 
 /// Projections that leave features as they are: Q = K = V = f.
 struct identity_projections {
+    /// W^Q f = f of one frame.
     template <class Real>
     void query(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
         copy(out, in_view<Real, 2>(f));
     }
+    /// W^K f = f of one frame.
     template <class Real>
     void key(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
         copy(out, in_view<Real, 2>(f));
     }
+    /// W^V f = f of one frame.
     template <class Real>
     void value(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
         copy(out, in_view<Real, 2>(f));
     }
+    /// One head.
     std::size_t heads() const { return 1; }
 };
 
@@ -42,22 +46,28 @@ struct analytic_denoiser {
     using real_type = Real;
     using features_type = host_features<Real>;
 
-    grid_extents grid;
-    std::size_t channels = 3;
-    Real mean = Real(0.5);
-    Real spread = Real(0.25);
-    Real attention = 0;
-    std::size_t guidance_branches = 1;
+    grid_extents grid;                 ///< of latents and of every site
+    std::size_t channels = 3;          ///< of latents and of every site
+    Real mean = Real(0.5);             ///< of clean latents
+    Real spread = Real(0.25);          ///< standard deviation of clean latents
+    Real attention = 0;                ///< share of F in the estimate
+    std::size_t guidance_branches = 1; ///< their features differ in sign, and the estimate is their mean
+    /// The sites, of which the last shapes the estimate.
     std::vector<attention_site> site_list = {
         {"encoder.attn1", network_kind::denoising, network_part::encoder, grid, channels},
         {"control.attn1", network_kind::control, network_part::decoder, grid, channels},
         {"decoder.attn1", network_kind::denoising, network_part::decoder, grid, channels}};
 
+    /// Channels of z.
     std::size_t latent_channels() const { return channels; }
+    /// Height and width of z.
     grid_extents latent_grid() const { return grid; }
+    /// One site in the encoder, one in a control network, one in the decoder.
     std::span<attention_site const> sites() const { return site_list; }
+    /// Guidance branches.
     std::size_t branches() const { return guidance_branches; }
 
+    /// Writes D(z, sigma) of frames, whatever their numbers, into x0.
     template <class Processor>
     void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
                     std::span<frame_index const> frames, Processor& processor) const {
