@@ -121,6 +121,11 @@ TEST_SUITE("correspondence/texel_grid") {
         CHECK(map.slot_count() == 0);
         CHECK(!map.point_at({1}, {3}).has_value());
     }
+    TEST_CASE("a texture without texels is refused") {
+        auto const maps = moving_strip();
+        CHECK_THROWS_WITH_AS(texel_grid(to_uv_view(maps), {1, 4}, {.T = 0}),
+                             "texture_resolution: T is 0, expected 1 to 1048576 texels", value_error);
+    }
     TEST_CASE("UVs that are not finite are refused by name") {
         auto maps = moving_strip();
         maps.uv(0, 0, 0, 0) = std::numeric_limits<float>::infinity();

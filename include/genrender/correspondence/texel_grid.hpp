@@ -30,9 +30,9 @@ enum class texel_reading : std::uint8_t {
 /// How texels are read.
 struct texel_grid_settings {
     /// T, texels along each side of every object's texture. Too low a T merges distinct points, too high a T lets
-    /// nothing meet (paper, supplement). 0 matches each object's T to its density in the maps: a quarter of a token,
+    /// nothing meet (paper, supplement). None matches each object's T to its density in the maps: a quarter of a token,
     /// yet at least two map pixels a texel, so that samples seldom miss it.
-    std::size_t T = 0;
+    std::optional<std::size_t> T{};
     texel_reading reading = texel_reading::nearest_sample;
     /// A texel without a sample of its own takes the nearest sample at most this many texels away on the same object.
     std::size_t dilation = 0;
@@ -49,12 +49,12 @@ public:
     };
 
     /// Compiles the UV maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, UVs
-    /// are not finite, or T exceeds 2^20.
+    /// are not finite, or T is outside [1, 2^20].
     texel_grid(uv_maps_view const& maps, grid_extents grid, texel_grid_settings const& settings = {},
                any_loop const& loop = {})
         : frames_(maps.frame_count()), grid_(grid), cell_(cell_extents("texel_grid", maps.grid(), grid)),
-          resolution_(settings.T > 0 ? texture_resolution::same(settings.T)
-                                     : texture_resolution::matched(maps, grid, texels_per_token(cell_))) {
+          resolution_(settings.T ? texture_resolution::same(*settings.T)
+                                 : texture_resolution::matched(maps, grid, texels_per_token(cell_))) {
         number_slots(maps, loop);
         visible_.resize(frames_);
         loop(frames_,
