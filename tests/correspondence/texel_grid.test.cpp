@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.2] The paper's correspondence: texels read and tokens that speak for them.
+// [GR sec. 3.2] The paper's correspondence: texels read and tokens that show them.
 #include <genrender/correspondence/texel_grid.hpp>
 
 #include "../support/correspondence_laws.hpp"
@@ -92,7 +92,7 @@ TEST_SUITE("correspondence/texel_grid") {
         for (std::uint64_t seed = 0; seed < 4; ++seed) {
             auto const maps = testing::random_scene(seed, 3, {48, 32}, 3);
             for (auto const reading : {texel_reading::nearest_sample, texel_reading::average}) {
-                for (std::size_t const T : {0U, 5U, 32U}) {
+                for (std::optional<std::size_t> const T : {std::optional<std::size_t>{}, {5}, {32}}) {
                     for (std::size_t const dilation : {0U, 2U}) {
                         texel_grid const map(to_uv_view(maps), {12, 8},
                                              {.T = T, .reading = reading, .dilation = dilation});

@@ -29,7 +29,7 @@ namespace genrender {
 /// These the compiler cannot check, and a model owes them (tests/support/correspondence_laws.hpp checks them):
 /// the point that a token shows is shown by some token of the same frame; tokens returned lie in the grid; equal
 /// questions get equal answers, from any thread. It does not require that the token that shows a point is the one it
-/// was asked from: where several tokens share a texel, one of them speaks for all.
+/// was asked from: where several tokens share a texel, one of them stands for all.
 ///
 /// See also: footprint_map, without a texture; texel_grid, the paper's own; weighted_ and graded_correspondence_map,
 /// for models that know several tokens a point and how well it is seen; blend_plan, which is compiled from it.

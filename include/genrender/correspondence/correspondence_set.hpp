@@ -9,7 +9,6 @@
 
 #include <map>
 #include <string>
-#include <utility>
 
 namespace genrender {
 

@@ -6,10 +6,10 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
-#include <genrender/correspondence/correspondence_map.hpp>
-#include <genrender/correspondence/frame_samples.hpp>
 #include <genrender/correspondence/frame_cache.hpp>
+#include <genrender/correspondence/frame_samples.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/token_matches.hpp>

@@ -5,13 +5,13 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
-#include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/correspondence/visible_texels.hpp>
 
 #include <algorithm>
-#include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -21,7 +21,7 @@
 
 namespace genrender {
 
-/// Which pixels of a frame speak for a texel.
+/// Which samples of a frame a texel takes.
 enum class texel_reading : std::uint8_t {
     nearest_sample, ///< the sample nearest to the texel's centre (the paper's "closest point correspondence")
     average         ///< all samples inside the texel, by their number
@@ -39,7 +39,7 @@ struct texel_grid_settings {
 };
 
 /// A model of correspondence_map in texels. Geometry is compiled once for an animation: what each token reads, and per
-/// frame which token speaks for each texel that any token reads. Lookups take constant time.
+/// frame which token shows each texel that any token reads. Lookups take constant time.
 class texel_grid {
 public:
     /// A texel that some token of the animation reads, counted from 0.
@@ -75,7 +75,7 @@ public:
         return slot == not_covered ? std::nullopt : std::optional(point_type{slot});
     }
 
-    /// The token that speaks for a texel in a frame; with texel_reading::average the one of greatest weight.
+    /// The token that shows a texel in a frame; with texel_reading::average the one of greatest weight.
     std::optional<token_index> token_at(frame_index frame, point_type point) const {
         auto const entries = visible_[frame.value].entries(point.slot);
         auto const best = std::max_element(entries.begin(), entries.end(),
@@ -83,7 +83,7 @@ public:
         return best == entries.end() ? std::nullopt : std::optional(best->token);
     }
 
-    /// Every token that speaks for a texel in a frame, with weights that sum to 1.
+    /// Every token that shows a texel in a frame, with weights that sum to 1.
     template <class Visit>
     void visit_tokens(frame_index frame, point_type point, Visit&& visit) const {
         for (auto const& entry : visible_[frame.value].entries(point.slot)) {
@@ -131,7 +131,7 @@ private:
         slot_count_ = slots_.size();
     }
 
-    /// Finds which token of one frame speaks for each texel.
+    /// Finds which token of one frame shows each texel.
     visible_texels visible_in(frame_index frame, uv_maps_view const& maps, texel_grid_settings const& settings) const {
         visible_texels::builder found(slot_count_);
         auto const map = maps.grid();
