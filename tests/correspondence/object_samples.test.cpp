@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Of the samples nearest in canonical space the closest on the screen shows a point, as a search through all of them says.
+// Of the samples nearest in canonical space the closest on the screen shows a point, as sorting all of them says.
 #include <genrender/correspondence/object_samples.hpp>
 
 #include <genrender/core/random.hpp>

@@ -38,13 +38,13 @@ struct footprint_map_settings {
 };
 
 /// A model of correspondence_map over canonical coordinates of D dimensions, UVs or rest positions. Every cell of the
-/// feature map has samples, up to 4 x 4 of the map's pixels for each object in it, with their footprints; a point is shown
-/// by the cell whose sample lies closest to it on that frame's screen. Points of surfaces that face the other way,
+/// feature map has samples, up to 4 x 4 of the map's pixels for each object in it, with their footprints; a point is
+/// shown by the cell whose sample lies closest to it on that frame's screen. Points of surfaces that face the other way,
 /// such as the second half of a mirrored texture or the back of a thin sheet, do not meet.
 ///
 /// Holds a copy of the maps, which for views means that what they view must outlive it and stay as it is, and of each
-/// frame no more than a pixel a token: the samples of a frame are made when it is asked for, and a cache has those of the
-/// last few.
+/// frame no more than a pixel a token: the samples of a frame are made when it is asked for, and a cache has those of
+/// the last few.
 template <std::size_t D>
 class footprint_map {
 public:

@@ -29,8 +29,8 @@ public:
         most_ = std::max(most_, most);
     }
 
-    /// The value of a frame, made by `make()` unless the cache has it; then the one that was asked for longest ago goes. What
-    /// `make` throws goes to the caller, and the next one makes it anew.
+    /// The value of a frame, made by `make()` unless the cache has it; then the one that was asked for longest ago goes.
+    /// What `make` throws goes to the caller, and the next one makes it anew.
     template <class Make>
     std::shared_ptr<Value const> of(frame_index frame, Make&& make) {
         auto const place = place_of(frame);
