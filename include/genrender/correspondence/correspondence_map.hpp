@@ -30,7 +30,7 @@ namespace genrender {
 /// testing/correspondence_laws.hpp checks them):
 /// the point that a token shows is shown by some token of the same frame; tokens returned lie in the grid; equal
 /// questions get equal answers, from any thread. It does not require that the token that shows a point is the one it
-/// was asked from: where several tokens share a texel, one of them speaks for all.
+/// was asked from: where several tokens share a texel, one of them stands for all.
 ///
 /// Optional capabilities: weighted_correspondence_map, for models that know several tokens a point;
 /// graded_correspondence_map, how well it is seen; matched_correspondence_map (blending/blend_plan.hpp), all tokens at
