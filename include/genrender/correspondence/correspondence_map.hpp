@@ -71,6 +71,7 @@ consteval void require_correspondence_map() {
 
 /// The least that a visitor of weighted tokens is, for checking maps; never run.
 struct token_visitor_archetype {
+    /// A token that shows the point, and its weight.
     void operator()(token_index token, double weight) const;
 };
 
@@ -105,9 +106,13 @@ concept graded_correspondence_map = correspondence_map<Map> &&
 /// The least that a correspondence_map is, for checking what takes one; never run.
 struct correspondence_map_archetype {
     struct point_type {};
+    /// Number of frames.
     std::size_t frame_count() const;
+    /// Height and width of the feature map.
     grid_extents grid() const;
+    /// The surface point that the token shows.
     std::optional<point_type> point_at(frame_index, token_index) const;
+    /// The token of the frame that shows the point.
     std::optional<token_index> token_at(frame_index, point_type) const;
 };
 

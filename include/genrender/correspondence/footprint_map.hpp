@@ -48,7 +48,7 @@ struct footprint_map_settings {
 template <std::size_t D>
 class footprint_map {
 public:
-    using point_type = footprint_point<D>;
+    using point_type = footprint_point<D>; ///< a surface point and how its pixel sees it
 
     /// Reads maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, canonical
     /// coordinates are not finite, or reach is not above 0.

@@ -24,6 +24,7 @@ public:
     static constexpr std::size_t visited = 8;
 
     nearest_samples() = default;
+    /// Of places that are numbered in their order.
     explicit nearest_samples(std::vector<std::array<float, D>> places)
         : cloud_(places.empty() ? nullptr : std::make_shared<cloud>(std::move(places))) {}
 

@@ -22,8 +22,8 @@ namespace genrender {
 /// A surface point and the footprint of the pixel that shows it.
 template <std::size_t D>
 struct footprint_point {
-    object_index object;
-    std::array<float, D> place{};
+    object_index object;                           ///< whose surface it is
+    std::array<float, D> place{};                  ///< canonical coordinates: UV, or a position at rest
     std::optional<surface_footprint<D>> footprint; ///< none for a pixel without neighbours of its object
 };
 
@@ -32,13 +32,14 @@ struct footprint_point {
 template <std::size_t D>
 class object_samples {
 public:
-    using point_type = footprint_point<D>;
+    using point_type = footprint_point<D>; ///< a surface point and how its pixel sees it
 
     /// What a pixel shows, and the token of the cell in which it lies.
     struct sample {
-        std::array<float, D> place{};
+        std::array<float, D> place{}; ///< canonical coordinates: UV, or a position at rest
+        /// How the pixel sees it; none for a pixel without neighbours of its object.
         std::optional<surface_footprint<D>> footprint;
-        token_match match;
+        token_match match; ///< the token that the pixel speaks for
     };
 
     /// Of pixels in a frame whose cells have `cell` pixels. A sample reaches `reach` half cells.

@@ -20,7 +20,7 @@ namespace genrender {
 
 /// A token that shows a surface point.
 struct token_match {
-    token_index token;
+    token_index token; ///< the token
     float quality = 0; ///< how well: the share of the cell that is the object's, times pixels a unit of area
 };
 
@@ -51,6 +51,7 @@ public:
     /// Bytes of a chunk of memory, about: it holds the matches of whole pairs, of one at least.
     static constexpr std::size_t chunk_bytes = std::size_t{512} << 10;
 
+    /// Keeps at most so many bytes of matches.
     explicit match_cache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
     /// The matches of a pair, made by `make()` unless they are in the cache.
@@ -97,9 +98,10 @@ private:
     /// Matches are small and stay. Allocated one by one between larger blocks that are freed, they would leave holes
     /// that nothing fits in, and a run of many frames would grow by them; so they lie in chunks, apart from the rest.
     struct store {
+        /// Matches and the pair of frames that they are of.
         struct link {
-            frame_pair frames;
-            token_matches const* matches;
+            frame_pair frames;            ///< from, to
+            token_matches const* matches; ///< in a chunk
         };
         std::list<std::pmr::monotonic_buffer_resource> chunks;
         std::size_t left = 0;    ///< bytes of the last chunk

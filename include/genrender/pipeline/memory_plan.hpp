@@ -55,8 +55,8 @@ struct planned_work {
 
 /// What a run of Alg. 1 will take.
 struct memory_plan {
-    planned_bytes bytes;
-    planned_work work;
+    planned_bytes bytes; ///< what it holds
+    planned_work work;   ///< what it computes
 };
 
 namespace detail {
