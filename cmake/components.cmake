@@ -62,22 +62,16 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     maps/uv_maps.hpp
     maps/uv_maps_view.hpp
     maps/uv_report.hpp
+    correspondence/chosen_correspondence.hpp
     correspondence/correspondence_map.hpp
     correspondence/correspondence_set.hpp
     correspondence/footprint_map.hpp
-    correspondence/frame_samples.hpp
-    correspondence/object_samples.hpp
     correspondence/frame_cache.hpp
+    correspondence/frame_samples.hpp
+    correspondence/nearest_samples.hpp
+    correspondence/object_samples.hpp
     correspondence/representative_pixel.hpp
     correspondence/reproject.hpp
-    correspondence/sample_bins.hpp
-    correspondence/sample_distances.hpp
-    correspondence/sample_distances.inl
-    correspondence/sample_grid.hpp
-    correspondence/sample_grid.inl
-    correspondence/sample_pack.hpp
-    correspondence/sample_tree.hpp
-    correspondence/chosen_correspondence.hpp
     correspondence/surface_footprint.hpp
     correspondence/surface_sample.hpp
     correspondence/texel_grid.hpp

@@ -75,7 +75,7 @@ void make_blend_plan(benchmark::State& state) {
     auto const is_kept = state.range(0) != 0;
     if (!worlds[is_kept]) {
         footprint_map_settings settings;
-        settings.kept_bytes = is_kept ? settings.kept_bytes : 0;
+        settings.match_cache_bytes = is_kept ? settings.match_cache_bytes : 0;
         worlds[is_kept] = std::make_unique<decoder_world>(frames, settings);
     }
     auto& world = *worlds[is_kept];

@@ -7,7 +7,6 @@
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/tensor.hpp>
-#include <genrender/correspondence/footprint_map.hpp>
 #include <genrender/noise/surface_noise.hpp>
 #include <genrender/normalization/adain.hpp>
 #include <genrender/reference/conv2d.hpp>
@@ -109,20 +108,6 @@ inline kernel_run make_surface_noise() {
     };
     return run_on(std::make_shared<inputs>(),
                   [](inputs& in) { surface_noise(in.z.view(), in.world.uv(), frame_index{0}, 1); });
-}
-
-/// Searched anew in every run.
-inline kernel_run make_matching() {
-    struct inputs {
-        turning_world world{2};
-        footprint_map<2> map{world.uv(), {32, 32}, {.kept_bytes = 0}};
-    };
-    return run_on(std::make_shared<inputs>(), [](inputs& in) {
-        frame_index const to{1};
-        if (in.map.matches({0}, {&to, 1}).empty()) {
-            throw value_error("make_matching: matches are none, expected those of a frame");
-        }
-    });
 }
 
 struct normalized_latents {
@@ -241,7 +226,6 @@ inline constexpr std::array hot_kernels{
     hot_kernel{"mix_float16", 0, detail::make_mix<float16>},
     hot_kernel{"mix_bfloat16", 0, detail::make_mix<bfloat16>},
     hot_kernel{"surface_noise", 0, detail::make_surface_noise},
-    hot_kernel{"matching", 0, detail::make_matching},
     hot_kernel{"statistics", 0, detail::make_statistics},
     hot_kernel{"normalize", 0, detail::make_normalize},
     hot_kernel{"heun", 0, detail::make_sampler<sampler_kind::heun>},

@@ -33,20 +33,20 @@ void read_maps(benchmark::State& state) {
 BENCHMARK(read_maps)->ArgNames({"side"})->Arg(64)->Arg(16)->Unit(benchmark::kMillisecond);
 
 /// What a frame needs to be a keyframe.
-void keep_frame(benchmark::State& state) {
+void sample_frame(benchmark::State& state) {
     auto const side = static_cast<std::size_t>(state.range(0));
     auto const maps = world().uv();
     std::uint32_t turn = 0;
     for (auto _ : state) {
         frame_index const i{turn++ % frames};
-        frame_samples<2> const kept(maps, i, {side, side}, 1, [&](token_index token) {
+        frame_samples<2> const samples(maps, i, {side, side}, 1, [&](token_index token) {
             return representative_pixel(maps, i, {side, side}, token);
         });
-        benchmark::DoNotOptimize(kept.samples_of({0}));
+        benchmark::DoNotOptimize(samples.samples_of({0}));
     }
     state.SetItemsProcessed(state.iterations());
 }
-BENCHMARK(keep_frame)->ArgNames({"side"})->Arg(64)->Arg(16)->Unit(benchmark::kMillisecond);
+BENCHMARK(sample_frame)->ArgNames({"side"})->Arg(64)->Arg(16)->Unit(benchmark::kMillisecond);
 
 /// Items are tokens that show an object.
 template <class Map>
@@ -68,13 +68,13 @@ void match(benchmark::State& state, Map const& map) {
 
 void match_by_uv(benchmark::State& state) {
     auto const side = static_cast<std::size_t>(state.range(0));
-    match(state, footprint_map(world().uv(), {side, side}, {.kept_bytes = 0}));
+    match(state, footprint_map(world().uv(), {side, side}, {.match_cache_bytes = 0}));
 }
 BENCHMARK(match_by_uv)->ArgNames({"side"})->Arg(64)->Arg(32)->Arg(16)->Arg(8)->Unit(benchmark::kMicrosecond);
 
 void match_by_position(benchmark::State& state) {
     auto const side = static_cast<std::size_t>(state.range(0));
-    match(state, footprint_map(world().position(), {side, side}, {.kept_bytes = 0}));
+    match(state, footprint_map(world().position(), {side, side}, {.match_cache_bytes = 0}));
 }
 BENCHMARK(match_by_position)->ArgNames({"side"})->Arg(64)->Arg(32)->Arg(16)->Arg(8)->Unit(benchmark::kMicrosecond);
 

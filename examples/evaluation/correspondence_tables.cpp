@@ -107,7 +107,7 @@ std::string matching_table(std::vector<named_maps> const& animations, threaded_l
     for (std::size_t const T : {0U, 64U, 256U, 1024U, 2048U, 4096U}) {
         correspondence_settings settings;
         settings.kind = correspondence_kind::texel_grid;
-        settings.texels.T = T;
+        settings.texels.T = T > 0 ? std::optional(T) : std::nullopt;
         rows.push_back({T == 0 ? "Texels, T matched" : "Texels, T = " + std::to_string(T), settings});
     }
     constexpr std::array<std::size_t, 4> sides{64, 32, 16, 8};

@@ -74,7 +74,7 @@ struct correspondence_options {
     template <class Real>
     void apply_to(render_settings<Real>& settings) const {
         settings.correspondence.kind = chosen<correspondence_kind>(correspondence, correspondence_names);
-        settings.correspondence.texels.T = feature_texels;
+        settings.correspondence.texels.T = feature_texels > 0 ? std::optional(feature_texels) : std::nullopt;
         settings.noise.reading = chosen<noise_reading>(noise, noise_names);
         settings.noise.T = noise_texels > 0 ? std::optional(noise_texels) : std::nullopt;
         settings.noise.background = chosen<background_noise>(background, background_names);

@@ -35,20 +35,16 @@
 #include <genrender/maps/uv_maps_view.hpp>
 #include <genrender/maps/uv_report.hpp>
 
+#include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
 #include <genrender/correspondence/footprint_map.hpp>
-#include <genrender/correspondence/frame_samples.hpp>
-#include <genrender/correspondence/object_samples.hpp>
 #include <genrender/correspondence/frame_cache.hpp>
+#include <genrender/correspondence/frame_samples.hpp>
+#include <genrender/correspondence/nearest_samples.hpp>
+#include <genrender/correspondence/object_samples.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/reproject.hpp>
-#include <genrender/correspondence/sample_bins.hpp>
-#include <genrender/correspondence/sample_distances.hpp>
-#include <genrender/correspondence/sample_grid.hpp>
-#include <genrender/correspondence/sample_pack.hpp>
-#include <genrender/correspondence/sample_tree.hpp>
-#include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/correspondence/texel_grid.hpp>

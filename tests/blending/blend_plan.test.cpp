@@ -281,7 +281,7 @@ TEST_SUITE("blending/blend_plan") {
         for (std::uint64_t seed = 0; seed < 6; ++seed) {
             auto const maps = testing::random_scene(seed, 6, {48, 64}, 1 + seed % 4);
             footprint_map const map(to_uv_view(maps), {12, 16});
-            footprint_map const forgetful(to_uv_view(maps), {12, 16}, {.kept_bytes = 0, .kept_frames = 1});
+            footprint_map const forgetful(to_uv_view(maps), {12, 16}, {.match_cache_bytes = 0, .cached_frames = 1});
             one_by_one const single{&map};
             auto const KF = draw_shuffled(seed);
             auto const share = seed % 2 == 0 ? Real(0.5) : Real(0.2);

@@ -27,10 +27,6 @@ TEST_SUITE("core/vectors") {
         at_each_vector_target([] { GENRENDER_KERNEL(testing, check_lane_counts)(); });
     }
 
-    TEST_CASE("all elements are folded into one") {
-        at_each_vector_target([] { GENRENDER_KERNEL(testing, check_folding)(); });
-    }
-
     TEST_CASE("elements are loaded from any address and bits stay what they are") {
         at_each_vector_target([] { GENRENDER_KERNEL(testing, check_bits)(); });
     }

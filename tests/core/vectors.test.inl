@@ -29,21 +29,6 @@ inline void check_lane_counts() {
     CHECK(lane_count<float> <= genrender::detail::most_lanes<float>);
 }
 
-inline void check_folding() {
-    constexpr auto count = lane_count<std::int32_t>;
-    std::int32_t lanes_in_order[count];
-    store(lanes_in_order, lane_numbers());
-    auto const last = static_cast<std::int32_t>(count) - 1;
-    CHECK(lanes_in_order[0] == 0);
-    CHECK(lanes_in_order[count - 1] == last);
-    auto const sum = folded<std::int32_t>(lane_numbers(),
-                                          [](auto const& a, auto const& b) GENRENDER_ALWAYS_INLINE { return a + b; });
-    auto const most = folded<std::int32_t>(lane_numbers(), [](auto const& a, auto const& b)
-                                                               GENRENDER_ALWAYS_INLINE { return a > b ? a : b; });
-    CHECK(sum == last * (last + 1) / 2);
-    CHECK(most == last);
-}
-
 inline void check_bits() {
     std::array<std::uint8_t, 9> const bytes{0, 1, 2, 3, 4, 5, 6, 7, 8};
     auto const number = load_as<std::uint64_t>(bytes.data() + 1);

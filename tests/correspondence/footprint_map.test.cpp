@@ -322,7 +322,7 @@ TEST_SUITE("correspondence/footprint_map") {
         CHECK(corresponding_token(map, {0}, {1}, {0}) == token_index{2 * 8 + 3});
     }
 
-    TEST_CASE("objects that share every part of a cell are all kept") {
+    TEST_CASE("objects that share every part of a cell all have samples") {
         // Columns of two objects in turn under cells of 8 x 8 pixels; frame 1 shows object 1 alone, frame 2 object 0.
         auto maps = filled_uv_maps(3, {16, 16}, [](std::size_t, map_place p) {
             return std::array{p.x / 16, p.y / 16};
@@ -507,7 +507,7 @@ TEST_SUITE("correspondence/footprint_map") {
         CHECK(map.quality_at({1}, point) > 0);
     }
 
-    TEST_CASE("two lonely pixels meet at one place alone") {
+    TEST_CASE("two isolated pixels meet at one place alone") {
         auto const maps = testing::drawn_maps({".... .a.. .... ....", ".... .a.. .... ....", ".... ..a. .... ...."});
         footprint_map const map(to_uv_view(maps), {4, 4});
         CHECK_FALSE(map.point_at({0}, {5})->footprint.has_value());
@@ -586,8 +586,8 @@ TEST_SUITE("correspondence/footprint_map") {
         auto const maps = testing::random_scene(6, 8, {64, 64}, 4);
         footprint_map const one(to_uv_view(maps), {16, 16});
         std::vector<frame_index> const KF{{5}, {0}, {7}};
-        for (std::size_t const kept : {0U, 1U, 8U}) {
-            footprint_map const many(to_uv_view(maps), {16, 16}, {.kept_bytes = 0, .kept_frames = kept});
+        for (std::size_t const frames : {0U, 1U, 8U}) {
+            footprint_map const many(to_uv_view(maps), {16, 16}, {.match_cache_bytes = 0, .cached_frames = frames});
             std::vector<std::vector<std::shared_ptr<token_matches const>>> found(64);
             threaded_loop(4)(64,
                              [&](std::size_t n) { found[n] = many.matches({static_cast<std::uint32_t>(n % 8)}, KF); });

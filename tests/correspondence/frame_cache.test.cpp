@@ -16,10 +16,10 @@ using namespace genrender;
 
 TEST_SUITE("correspondence/frame_cache") {
     TEST_CASE("the frame that was asked for longest ago is made again") {
-        frame_cache<std::uint32_t> recent(2);
+        frame_cache<std::uint32_t> cache(2);
         std::size_t made = 0;
         auto const value_of = [&](std::uint32_t frame) {
-            return *recent.of({frame}, [&] {
+            return *cache.of({frame}, [&] {
                 ++made;
                 return 10 * frame;
             });
@@ -36,12 +36,12 @@ TEST_SUITE("correspondence/frame_cache") {
     }
 
     TEST_CASE("frames asked for in turn are found when there is room for them all") {
-        frame_cache<std::uint32_t> recent(0);
-        recent.keep_at_least(3);
-        recent.keep_at_least(2);
+        frame_cache<std::uint32_t> cache(0);
+        cache.grow_to(3);
+        cache.grow_to(2);
         std::size_t made = 0;
         for (std::uint32_t n = 0; n < 12; ++n) {
-            CHECK(*recent.of({n % 3}, [&] {
+            CHECK(*cache.of({n % 3}, [&] {
                 ++made;
                 return n % 3;
             }) == n % 3);
@@ -51,27 +51,27 @@ TEST_SUITE("correspondence/frame_cache") {
 
     TEST_CASE("a value in use stays when its place is taken") {
         for (std::size_t const most : {0U, 1U}) {
-            frame_cache<std::uint32_t> recent(most);
-            auto const first = recent.of({1}, [] { return 7U; });
-            auto const second = recent.of({2}, [] { return 8U; });
+            frame_cache<std::uint32_t> cache(most);
+            auto const first = cache.of({1}, [] { return 7U; });
+            auto const second = cache.of({2}, [] { return 8U; });
             CHECK(*first == 7);
             CHECK(*second == 8);
         }
     }
 
     TEST_CASE("what cannot be made is tried anew") {
-        frame_cache<std::uint32_t> recent(3);
-        CHECK_THROWS_AS(recent.of({1}, []() -> std::uint32_t { throw std::runtime_error("no"); }), std::runtime_error);
-        CHECK(*recent.of({1}, [] { return 5U; }) == 5);
+        frame_cache<std::uint32_t> cache(3);
+        CHECK_THROWS_AS(cache.of({1}, []() -> std::uint32_t { throw std::runtime_error("no"); }), std::runtime_error);
+        CHECK(*cache.of({1}, [] { return 5U; }) == 5);
     }
 
     TEST_CASE("threads that ask for one frame make it once") {
-        frame_cache<std::uint32_t> recent(5);
+        frame_cache<std::uint32_t> cache(5);
         std::atomic<std::size_t> made{0};
         std::atomic<std::size_t> wrong{0};
         threaded_loop(4)(1000, [&](std::size_t n) {
             auto const frame = static_cast<std::uint32_t>(n % 5);
-            auto const value = recent.of({frame}, [&] {
+            auto const value = cache.of({frame}, [&] {
                 ++made;
                 return frame + 1;
             });

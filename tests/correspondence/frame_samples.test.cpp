@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A frame keeps of every cell and object the pixels nearest to the middles of the cell's parts.
+// A frame has samples of every cell and object: the pixels nearest to the middles of the cell's parts.
 #include <genrender/correspondence/frame_samples.hpp>
 
 #include "../support/random_scene.hpp"
@@ -9,18 +9,19 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
+#include <optional>
+#include <set>
 
 using namespace genrender;
 
 namespace {
 
 template <class Maps>
-frame_samples<2> kept(Maps const& maps, grid_extents grid) {
+frame_samples<2> samples_in(Maps const& maps, grid_extents grid) {
     return {maps, {0}, grid, 1, [&](token_index token) { return representative_pixel(maps, {0}, grid, token); }};
 }
 
@@ -44,64 +45,62 @@ footprint_point<2> place(float u, float v) {
 } // namespace
 
 TEST_SUITE("correspondence/frame_samples") {
-    TEST_CASE("every pixel of a small cell speaks, with the share of the cell and the pixels a unit of surface") {
+    TEST_CASE("every pixel of a small cell is a sample, with the share of the cell and the pixels a unit of surface") {
         auto maps = plane();
         for (std::size_t row = 0; row < 4; ++row) {
             maps.coverage(0, row, 3) = 0; // a quarter of the first cell
         }
-        auto const frame = kept(to_uv_view(maps), {4, 4});
+        auto const frame = samples_in(to_uv_view(maps), {4, 4});
         REQUIRE(frame.samples_of({0}) != nullptr);
         CHECK(frame.samples_of({1}) == nullptr);
         auto const& samples = *frame.samples_of({0});
         for (std::size_t row = 0; row < 16; ++row) {
             for (std::size_t column = 0; column < 16; ++column) {
-                auto const number =
-                    samples.number_at(place(static_cast<float>(column) / 32, static_cast<float>(row) / 32));
-                REQUIRE(number.has_value());
-                auto const& speaker = samples.speaker_of(*number);
+                auto const* const sample =
+                    samples.sample_of(place(static_cast<float>(column) / 32, static_cast<float>(row) / 32));
+                REQUIRE(sample != nullptr);
+                auto const& match = sample->match;
                 if (row >= 4 || column != 3) {
-                    CHECK(speaker.token.value == row / 4 * 4 + column / 4);
+                    CHECK(match.token.value == row / 4 * 4 + column / 4);
                 }
-                CHECK(speaker.quality == (speaker.token.value == 0 ? 0.75F * 1024 : 1024.0F));
+                CHECK(match.quality == (match.token.value == 0 ? 0.75F * 1024 : 1024.0F));
             }
         }
     }
 
-    TEST_CASE("of large cells four by four pixels and the representative are kept") {
-        // One cell of 16 x 16: parts of 4 x 4 whose middles lie between pixels; the upper left of the four is kept.
+    TEST_CASE("of large cells four by four pixels and the representative are samples") {
+        // One cell of 16 x 16: parts of 4 x 4 whose middles lie between pixels; the upper left of the four is taken.
         auto const maps = plane();
-        auto const frame = kept(to_uv_view(maps), {1, 1});
+        auto const frame = samples_in(to_uv_view(maps), {1, 1});
         auto const& samples = *frame.samples_of({0});
-        // Each kept pixel is found at its own place, and its number by no other place.
-        std::vector<std::uint32_t> numbers;
+        // Each sample is found at its own place.
+        std::set<std::array<float, 2>> places;
         for (std::size_t row = 0; row < 16; ++row) {
             for (std::size_t column = 0; column < 16; ++column) {
-                auto const number =
-                    samples.number_by_tree(place(static_cast<float>(column) / 32, static_cast<float>(row) / 32));
-                REQUIRE(number.has_value());
-                numbers.push_back(*number);
+                auto const* const sample =
+                    samples.sample_of(place(static_cast<float>(column) / 32, static_cast<float>(row) / 32));
+                REQUIRE(sample != nullptr);
+                places.insert(sample->place);
             }
         }
-        std::sort(numbers.begin(), numbers.end());
-        numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-        CHECK(numbers.size() == 17); // the representative (7, 7) is none of the sixteen
+        CHECK(places.size() == 17); // the representative (7, 7) is none of the sixteen
     }
 
-    TEST_CASE("objects of a cell are kept apart") {
+    TEST_CASE("objects of a cell have samples of their own") {
         auto const scene = testing::random_scene(5, 1, {48, 48}, 3);
         auto const maps = to_uv_view(scene);
-        auto const frame = kept(maps, {12, 12});
+        auto const frame = samples_in(maps, {12, 12});
         std::size_t own = 0;
         for (std::uint32_t row = 0; row < 48; ++row) {
             for (std::uint32_t column = 0; column < 48; ++column) {
                 if (maps.is_covered({0}, {row, column})) {
                     auto const* const samples = frame.samples_of(maps.object_at({0}, {row, column}));
                     REQUIRE(samples != nullptr);
-                    auto const number =
-                        samples->number_at({maps.object_at({0}, {row, column}), maps.point_at({0}, {row, column}),
+                    auto const* const sample =
+                        samples->sample_of({maps.object_at({0}, {row, column}), maps.point_at({0}, {row, column}),
                                             footprint_at(maps, {0}, {row, column})});
-                    REQUIRE(number.has_value());
-                    own += samples->speaker_of(*number).token.value == row / 4 * 12 + column / 4 ? 1U : 0U;
+                    REQUIRE(sample != nullptr);
+                    own += sample->match.token.value == row / 4 * 12 + column / 4 ? 1U : 0U;
                 }
             }
         }
@@ -111,7 +110,7 @@ TEST_SUITE("correspondence/frame_samples") {
     TEST_CASE("coordinates that are not finite are refused") {
         auto maps = plane();
         maps.uv(0, 5, 5, 1) = std::numeric_limits<float>::quiet_NaN();
-        CHECK_THROWS_WITH_AS(kept(to_uv_view(maps), {4, 4}),
+        CHECK_THROWS_WITH_AS(samples_in(to_uv_view(maps), {4, 4}),
                              "frame_samples: maps is nan, expected finite canonical coordinates", value_error);
     }
 
@@ -120,14 +119,17 @@ TEST_SUITE("correspondence/frame_samples") {
         for (auto& coordinate : maps.uv) {
             coordinate *= 1e-19F;
         }
-        auto const tiny = kept(to_uv_view(maps), {4, 4});
-        auto const& samples = *tiny.samples_of({0});
-        CHECK(samples.speaker_of(0).quality == std::numeric_limits<float>::max());
+        auto const tiny = samples_in(to_uv_view(maps), {4, 4});
+        auto const* const sample = tiny.samples_of({0})->sample_of({{0}, {0, 0}, std::nullopt});
+        REQUIRE(sample != nullptr);
+        CHECK(sample->match.quality == std::numeric_limits<float>::max());
         maps = plane();
         maps.coverage.fill(0);
         maps.coverage(0, 5, 5) = 1;
-        auto const lonely = kept(to_uv_view(maps), {4, 4});
-        CHECK(lonely.samples_of({0})->speaker_of(0).quality == 0);
-        CHECK(lonely.samples_of({0})->speaker_of(0).token == token_index{5});
+        auto const isolated = samples_in(to_uv_view(maps), {4, 4});
+        auto const* const alone = isolated.samples_of({0})->sample_of({{0}, {5.0F / 32, 5.0F / 32}, std::nullopt});
+        REQUIRE(alone != nullptr);
+        CHECK(alone->match.quality == 0);
+        CHECK(alone->match.token == token_index{5});
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.2] The paper's correspondence: texels read and tokens that speak for them.
+// [GR sec. 3.2] The paper's correspondence: texels read and tokens that show them.
 #include <genrender/correspondence/texel_grid.hpp>
 
 #include <genrender/testing/correspondence_laws.hpp>
@@ -92,7 +92,7 @@ TEST_SUITE("correspondence/texel_grid") {
         for (std::uint64_t seed = 0; seed < 4; ++seed) {
             auto const maps = testing::random_scene(seed, 3, {48, 32}, 3);
             for (auto const reading : {texel_reading::nearest_sample, texel_reading::average}) {
-                for (std::size_t const T : {0U, 5U, 32U}) {
+                for (std::optional<std::size_t> const T : {std::optional<std::size_t>{}, {5}, {32}}) {
                     for (std::size_t const dilation : {0U, 2U}) {
                         texel_grid const map(to_uv_view(maps), {12, 8},
                                              {.T = T, .reading = reading, .dilation = dilation});
@@ -122,6 +122,11 @@ TEST_SUITE("correspondence/texel_grid") {
         texel_grid const map(to_uv_view(maps), {2, 2});
         CHECK(map.slot_count() == 0);
         CHECK(!map.point_at({1}, {3}).has_value());
+    }
+    TEST_CASE("a texture without texels is refused") {
+        auto const maps = moving_strip();
+        CHECK_THROWS_WITH_AS(texel_grid(to_uv_view(maps), {1, 4}, {.T = 0}),
+                             "texture_resolution: T is 0, expected 1 to 1048576 texels", value_error);
     }
     TEST_CASE("UVs that are not finite are refused by name") {
         auto maps = moving_strip();

@@ -7,7 +7,7 @@
 using namespace genrender;
 
 TEST_SUITE("correspondence/visible_texels") {
-    TEST_CASE("the nearest sample speaks and the first offered wins a tie") {
+    TEST_CASE("the nearest sample shows a texel and the first offered wins a tie") {
         visible_texels::builder builder(200);
         builder.offer(3, {10}, 0.5, true, false);
         builder.offer(3, {11}, 0.2, true, false);

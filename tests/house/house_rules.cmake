@@ -17,6 +17,7 @@ set(rooms ${core_rooms} ${component_rooms})
 set(doors
     "xtensor/|xtl/|xsimd/" core/tensor.hpp
     "Eigen/" core/linalg.hpp
+    "nanoflann" correspondence/nearest_samples.hpp
     "thread>|future>" core/parallel.hpp
     "random>" nothing)
 set(most_lines 300)

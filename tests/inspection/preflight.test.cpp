@@ -207,7 +207,7 @@ TEST_SUITE("inspection/preflight") {
         auto const coarse = flown(slanted_maps(6), settings, {{16, 16}});
         CHECK(says(coarse, texture_too_coarse));
         CHECK(*coarse.grids[0].collisions() > 0.5);
-        settings.correspondence.texels.T = 0;
+        settings.correspondence.texels.T.reset();
         CHECK(flown(slanted_maps(6), settings, {{16, 16}}).recommendations.empty());
     }
 }

@@ -30,8 +30,9 @@ template <class Real>
 struct blend_plan {
     std::vector<std::uint32_t> offsets{0}; ///< tokens + 1 of them
     std::vector<std::uint32_t> sources;    ///< keyframe * tokens + token, keyframes counted in the drawn order
-    std::vector<Real> weights;
+    std::vector<Real> weights;             ///< one per source; those of a token sum to 1
 
+    /// The plan as it is applied: a row per token.
     sparse_rows<Real> rows() const { return {offsets, sources, weights}; }
 
     /// Number of tokens that some keyframe covers.

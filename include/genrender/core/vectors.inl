@@ -110,27 +110,6 @@ GENRENDER_ALWAYS_INLINE inline bool any_greater(std::type_identity_t<lanes<T>> a
     }
 }
 
-/// 0, 1, 2, ...
-GENRENDER_ALWAYS_INLINE inline lanes<std::int32_t> lane_numbers() {
-    std::int32_t numbers[lane_count<std::int32_t>];
-    for (std::size_t n = 0; n < lane_count<std::int32_t>; ++n) {
-        numbers[n] = static_cast<std::int32_t>(n);
-    }
-    return load(numbers);
-}
-
-/// The `Count` elements of a vector folded into one by `fold(a, b)`, half onto half.
-template <class T, std::size_t Count = lane_count<T>, class Fold>
-GENRENDER_ALWAYS_INLINE inline T folded(std::type_identity_t<lanes<T, Count>> const& values, Fold const& fold) {
-    if constexpr (Count == 1) {
-        return bits_as<T>(values);
-    } else {
-        lanes<T, Count / 2> halves[2];
-        std::memcpy(halves, &values, sizeof values);
-        return folded<T, Count / 2>(fold(halves[0], halves[1]), fold);
-    }
-}
-
 /// Asks for the cache line at an address to be in the second cache when it is read. Changes no value.
 GENRENDER_ALWAYS_INLINE inline void prefetch_to_read([[maybe_unused]] void const* at) {
 #if defined(__GNUC__)

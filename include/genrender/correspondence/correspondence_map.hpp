@@ -30,7 +30,7 @@ namespace genrender {
 /// testing/correspondence_laws.hpp checks them):
 /// the point that a token shows is shown by some token of the same frame; tokens returned lie in the grid; equal
 /// questions get equal answers, from any thread. It does not require that the token that shows a point is the one it
-/// was asked from: where several tokens share a texel, one of them speaks for all.
+/// was asked from: where several tokens share a texel, one of them stands for all.
 ///
 /// Optional capabilities: weighted_correspondence_map, for models that know several tokens a point;
 /// graded_correspondence_map, how well it is seen; matched_correspondence_map (blending/blend_plan.hpp), all tokens at
@@ -71,7 +71,7 @@ consteval void require_correspondence_map() {
 
 /// The least that a visitor of weighted tokens is, for checking maps; never run.
 struct token_visitor_archetype {
-    /// Takes a token that shows the point and its share.
+    /// A token that shows the point, and its weight.
     void operator()(token_index token, double weight) const;
 };
 
@@ -106,9 +106,13 @@ concept graded_correspondence_map = correspondence_map<Map> &&
 /// The least that a correspondence_map is, for checking what takes one; never run.
 struct correspondence_map_archetype {
     struct point_type {};
+    /// Number of frames.
     std::size_t frame_count() const;
+    /// Height and width of the feature map.
     grid_extents grid() const;
+    /// The surface point that the token shows.
     std::optional<point_type> point_at(frame_index, token_index) const;
+    /// The token of the frame that shows the point.
     std::optional<token_index> token_at(frame_index, point_type) const;
 };
 

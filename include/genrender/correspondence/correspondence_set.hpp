@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace genrender {
@@ -48,7 +47,9 @@ public:
         return counts[i.value];
     }
 
+    /// Pairs of a grid and its map, by grid.
     auto begin() const { return maps_.begin(); }
+    /// Past the last of these pairs.
     auto end() const { return maps_.end(); }
 
 private:

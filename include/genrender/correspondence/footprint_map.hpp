@@ -6,10 +6,10 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
-#include <genrender/correspondence/correspondence_map.hpp>
-#include <genrender/correspondence/frame_samples.hpp>
 #include <genrender/correspondence/frame_cache.hpp>
+#include <genrender/correspondence/frame_samples.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/token_matches.hpp>
@@ -25,30 +25,30 @@
 
 namespace genrender {
 
-/// How far a footprint reaches, and what is kept to find tokens fast.
+/// How far a footprint reaches, and how much memory the caches take that find tokens fast.
 struct footprint_map_settings {
     /// A frame shows a point if it lies at most this many half cells, along each axis of the screen, from something
     /// that the frame shows of the same object. Above 0.
     double reach = 1;
-    /// Bytes of matches between frames that a map may keep for later steps.
-    std::size_t kept_bytes = std::size_t{64} << 20;
-    /// Frames in which a map can find tokens without reading the maps again; it keeps at least as many as it is asked
-    /// for matches with at once.
-    std::size_t kept_frames = 8;
+    /// Bytes of matches between frames that a map's cache may hold for later steps.
+    std::size_t match_cache_bytes = std::size_t{64} << 20;
+    /// Frames in which a map can find tokens without reading the maps again; its cache holds at least as many as it is
+    /// asked for matches with at once.
+    std::size_t cached_frames = 8;
 };
 
 /// A model of correspondence_map over canonical coordinates of D dimensions, UVs or rest positions. Every cell of the
-/// feature map keeps up to 4 x 4 of the map's pixels for each object in it, with their footprints; a point is shown by
-/// the cell whose kept pixel lies closest to it on that frame's screen. Points of surfaces that face the other way,
+/// feature map has samples, up to 4 x 4 of the map's pixels for each object in it, with their footprints; a point is
+/// shown by the cell whose sample lies closest to it on that frame's screen. Points of surfaces that face the other way,
 /// such as the second half of a mirrored texture or the back of a thin sheet, do not meet.
 ///
-/// Keeps a copy of the maps, which for views means that what they view must outlive it and stay as it is, and of each
-/// frame no more than a pixel a token: what finding tokens takes is made of a frame when it is asked for, and kept of
+/// Holds a copy of the maps, which for views means that what they view must outlive it and stay as it is, and of each
+/// frame no more than a pixel a token: the samples of a frame are made when it is asked for, and a cache has those of
 /// the last few.
 template <std::size_t D>
 class footprint_map {
 public:
-    using point_type = footprint_point<D>;
+    using point_type = footprint_point<D>; ///< a surface point and how its pixel sees it
 
     /// Reads maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, canonical
     /// coordinates are not finite, or reach is not above 0.
@@ -56,8 +56,8 @@ public:
         requires(Maps::dimensions == D)
     footprint_map(Maps const& maps, grid_extents grid, footprint_map_settings const& settings = {},
                   any_loop const& loop = {})
-        : grid_(grid), matches_(std::make_shared<match_cache>(settings.kept_bytes)),
-          recent_(std::make_shared<frame_cache<frame_samples<D>>>(settings.kept_frames)) {
+        : grid_(grid), match_cache_(std::make_shared<match_cache>(settings.match_cache_bytes)),
+          frame_cache_(std::make_shared<frame_cache<frame_samples<D>>>(settings.cached_frames)) {
         require_value(settings.reach > 0, "footprint_map", "settings.reach", settings.reach, "a number above 0");
         cell_extents("footprint_map", maps.grid(), grid);
         auto const source = std::make_shared<source_of<Maps>>(maps, grid, settings.reach);
@@ -75,29 +75,29 @@ public:
         return source_->point_at(frame, token);
     }
 
-    /// The token whose cell shows the point in that frame: of the kept pixels the closest on the screen, ties by lowest
+    /// The token whose cell shows the point in that frame: of its samples the closest on the screen, ties by lowest
     /// token.
     std::optional<token_index> token_at(frame_index frame, point_type const& point) const {
-        auto const speaker = speaker_at(frame, point);
-        return speaker ? std::optional(speaker->token) : std::nullopt;
+        auto const match = match_of(frame, point);
+        return match ? std::optional(match->token) : std::nullopt;
     }
 
-    /// The same for the points of all tokens of a frame, in each of several others. What was asked once is kept, see
-    /// footprint_map_settings::kept_bytes.
+    /// The same for the points of all tokens of a frame, in each of several others. What was asked once is in a
+    /// cache, see footprint_map_settings::match_cache_bytes.
     std::vector<std::shared_ptr<token_matches const>> matches(frame_index from, std::span<frame_index const> to) const {
         std::vector<std::shared_ptr<token_matches const>> result(to.size());
-        recent_->keep_at_least(to.size());
-        // Points are read once for all that are not kept, and no call allocates them anew.
+        frame_cache_->grow_to(to.size());
+        // Points are read once for all that the cache has not, and no call allocates them anew.
         thread_local std::vector<std::optional<point_type>> points;
         points.clear();
         for (std::size_t n = 0; n < to.size(); ++n) {
             // Neighbouring frames, which other threads ask for, begin elsewhere: each makes other frames ready.
             auto const k = (from.value + n) % to.size();
-            result[k] = matches_->of(from, to[k], [&] {
+            result[k] = match_cache_->of(from, to[k], [&] {
                 for (std::uint32_t t = 0; points.size() < grid_.size(); ++t) {
                     points.push_back(point_at(from, {t}));
                 }
-                return match(points, *kept(to[k]));
+                return match(points, *samples_in(to[k]));
             });
         }
         return result;
@@ -106,18 +106,16 @@ public:
     /// How well a frame shows a point, for averages over keyframes: the share of the cell that the point's object owns
     /// times how many of the frame's pixels a unit of surface fills; 0 where the frame does not show it.
     double quality_at(frame_index frame, point_type const& point) const {
-        auto const speaker = speaker_at(frame, point);
-        return speaker ? double{speaker->quality} : 0;
+        auto const match = match_of(frame, point);
+        return match ? double{match->quality} : 0;
     }
 
-    /// Bytes of a map of `frames` frames and so many tokens, about, besides what it keeps to find tokens fast.
+    /// Bytes of a map of `frames` frames and so many tokens, about, besides its caches.
     static constexpr std::size_t expected_bytes(std::size_t frames, std::size_t tokens) {
         return frames * (sizeof(representatives) + tokens * sizeof(std::uint32_t) + tokens / 8);
     }
 
 private:
-    using speaker_type = typename object_samples<D>::speaker;
-
     /// The pixels that stand for the tokens of a frame.
     struct representatives {
         std::vector<std::uint32_t> numbers; ///< row * width + column, of tokens that have one
@@ -129,7 +127,7 @@ private:
         virtual ~source_type() = default;
         virtual std::size_t frame_count() const = 0;
         virtual std::optional<point_type> point_at(frame_index i, token_index token) const = 0;
-        virtual frame_samples<D> keep(frame_index i) const = 0;
+        virtual frame_samples<D> samples_in(frame_index i) const = 0;
     };
 
     template <canonical_maps Maps>
@@ -161,7 +159,7 @@ private:
                      : std::nullopt;
         }
 
-        frame_samples<D> keep(frame_index i) const override {
+        frame_samples<D> samples_in(frame_index i) const override {
             return {maps_, i, grid_, reach_, [&](token_index token) { return representative_of(i, token); }};
         }
 
@@ -189,39 +187,30 @@ private:
         std::vector<representatives> representatives_; ///< [frames]
     };
 
-    std::shared_ptr<frame_samples<D> const> kept(frame_index i) const {
-        return recent_->of(i, [&] { return source_->keep(i); });
+    std::shared_ptr<frame_samples<D> const> samples_in(frame_index i) const {
+        return frame_cache_->of(i, [&] { return source_->samples_in(i); });
     }
 
-    std::optional<speaker_type> speaker_at(frame_index i, point_type const& point) const {
-        auto const frame = kept(i);
-        auto const* const samples = frame->samples_of(point.object);
-        auto const number = samples != nullptr ? samples->number_at(point) : std::nullopt;
-        return number ? std::optional(samples->speaker_of(*number)) : std::nullopt;
+    std::optional<token_match> match_of(frame_index i, point_type const& point) const {
+        auto const frame = samples_in(i);
+        auto const* const sample = sample_of(*frame, point);
+        return sample != nullptr ? std::optional(sample->match) : std::nullopt;
+    }
+
+    /// The sample of a frame that shows a point; null if none does.
+    static typename object_samples<D>::sample const* sample_of(frame_samples<D> const& frame, point_type const& point) {
+        auto const* const samples = frame.samples_of(point.object);
+        return samples != nullptr ? samples->sample_of(point) : nullptr;
     }
 
     static token_matches match(std::vector<std::optional<point_type>> const& points, frame_samples<D> const& to) {
-        // First who shows what, then who that is: reading the latter would wait for memory, one token after the other.
-        struct finding {
-            object_samples<D> const* samples;
-            std::uint32_t number;
-            std::uint32_t token;
-        };
-        thread_local std::vector<finding> found;
-        found.clear();
-        found.reserve(points.size());
-        for (std::uint32_t t = 0; t < points.size(); ++t) {
-            auto const* const samples = points[t] ? to.samples_of(points[t]->object) : nullptr;
-            if (auto const number = samples != nullptr ? samples->number_at(*points[t]) : std::nullopt) {
-                found.push_back({samples, *number, t});
-            }
-        }
         token_matches result(points.size());
-        for (auto const& [samples, number, t] : found) {
-            auto const& speaker = samples->speaker_of(number);
-            result.tokens[t] = speaker.token.value;
-            result.is_shown[t] = 1;
-            result.qualities[t] = speaker.quality;
+        for (std::size_t t = 0; t < points.size(); ++t) {
+            if (auto const* const sample = points[t] ? sample_of(to, *points[t]) : nullptr) {
+                result.tokens[t] = sample->match.token.value;
+                result.is_shown[t] = 1;
+                result.qualities[t] = sample->match.quality;
+            }
         }
         return result;
     }
@@ -229,8 +218,8 @@ private:
     grid_extents grid_;
     std::shared_ptr<source_type const> source_;
     // Shared by copies, for which all is the same.
-    std::shared_ptr<match_cache> matches_;
-    std::shared_ptr<frame_cache<frame_samples<D>>> recent_;
+    std::shared_ptr<match_cache> match_cache_;
+    std::shared_ptr<frame_cache<frame_samples<D>>> frame_cache_;
 };
 
 /// Deduces the dimensions from the maps.

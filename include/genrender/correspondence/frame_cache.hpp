@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is made of frames and costs too much memory to have of all: kept of those that were asked for last.
+// A cache of what is made of frames and costs too much memory to have of all: of those that were asked for last.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
@@ -11,27 +11,26 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <utility>
 #include <vector>
 
 namespace genrender {
 
-/// Values that are made of single frames, kept of those that were asked for last. May be used from several threads,
+/// Values that are made of single frames, those that were asked for last. May be used from several threads,
 /// which wait long for each other only where they ask for the same frame.
 template <class Value>
 class frame_cache {
 public:
-    /// Keeps at most so many, and one at least.
+    /// Of at most so many values, and one at least.
     explicit frame_cache(std::size_t most) : most_(std::max<std::size_t>(most, 1)) {}
 
     /// Makes room for so many, for one who asks for them in turn: with less room none would ever be found.
-    void keep_at_least(std::size_t most) {
+    void grow_to(std::size_t most) {
         std::lock_guard const lock(mutex_);
         most_ = std::max(most_, most);
     }
 
-    /// The value of a frame, made by `make()` unless it is kept; then the one that was asked for longest ago goes. What
-    /// `make` throws goes to the caller, and the next one makes it anew.
+    /// The value of a frame, made by `make()` unless the cache has it; then the one that was asked for longest ago goes.
+    /// What `make` throws goes to the caller, and the next one makes it anew.
     template <class Make>
     std::shared_ptr<Value const> of(frame_index frame, Make&& make) {
         auto const place = place_of(frame);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is kept of a frame's maps to tell which of its tokens show a surface point.
+// Samples of a frame's maps, which tell which of its tokens show a surface point.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -60,9 +59,8 @@ public:
             reader.read(t / grid.width * cell.height, t % grid.width * cell.width);
             reader.add({t}, representative_of(token_index{t}), found);
         }
-        auto const spacing = std::max(1.0, std::sqrt(static_cast<double>(cell.size())) / samples_per_side);
         for (auto& [object, samples] : found) {
-            of_object_.try_emplace(object, std::move(samples), reach, cell, spacing);
+            of_object_.try_emplace(object, std::move(samples), reach, cell);
         }
     }
 
@@ -72,9 +70,9 @@ public:
     }
 
     /// Bytes that making such a frame takes for a moment, about: samples as they are found, in vectors that are a third
-    /// empty, and once more in their order.
+    /// empty.
     static constexpr std::size_t making_bytes(std::size_t pixels, std::size_t cell) {
-        return expected_samples(pixels, cell) * sizeof(sample) * 5 / 2;
+        return expected_samples(pixels, cell) * sizeof(sample) * 3 / 2;
     }
 
     /// The samples of an object; null if the frame does not show it.
@@ -120,14 +118,14 @@ private:
             for (auto const& object : seen_) {
                 auto const purity = static_cast<double>(object.pixels) / static_cast<double>(cell_.size());
                 auto& samples = found[object.number];
-                auto is_kept = !representative || maps_.object_at(i_, *representative) != object.number;
+                auto is_sampled = !representative || maps_.object_at(i_, *representative) != object.number;
                 for (auto const& nearest : object.nearest) {
                     if (nearest) {
                         samples.push_back(sample_at(nearest->at, token, purity));
-                        is_kept = is_kept || nearest->at == *representative;
+                        is_sampled = is_sampled || nearest->at == *representative;
                     }
                 }
-                if (!is_kept) {
+                if (!is_sampled) {
                     samples.push_back(sample_at(*representative, token, purity));
                 }
             }
@@ -177,7 +175,7 @@ private:
             auto const footprint = footprint_at(maps_, i_, p);
             auto const quality = footprint ? purity / footprint->area() : 0;
             auto const most = double{std::numeric_limits<float>::max()};
-            return {{place, footprint}, {token, static_cast<float>(std::min(quality, most))}};
+            return {place, footprint, {token, static_cast<float>(std::min(quality, most))}};
         }
 
         Maps const& maps_;

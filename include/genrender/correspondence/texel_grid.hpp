@@ -5,13 +5,13 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/index.hpp>
 #include <genrender/core/parallel.hpp>
-#include <genrender/correspondence/correspondence_map.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/correspondence/visible_texels.hpp>
 
 #include <algorithm>
-#include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -21,7 +21,7 @@
 
 namespace genrender {
 
-/// Which pixels of a frame speak for a texel.
+/// Which samples of a frame a texel takes.
 enum class texel_reading : std::uint8_t {
     nearest_sample, ///< the sample nearest to the texel's centre (the paper's "closest point correspondence")
     average         ///< all samples inside the texel, by their number
@@ -30,16 +30,16 @@ enum class texel_reading : std::uint8_t {
 /// How texels are read.
 struct texel_grid_settings {
     /// T, texels along each side of every object's texture. Too low a T merges distinct points, too high a T lets
-    /// nothing meet (paper, supplement). 0 matches each object's T to its density in the maps: a quarter of a token,
+    /// nothing meet (paper, supplement). None matches each object's T to its density in the maps: a quarter of a token,
     /// yet at least two map pixels a texel, so that samples seldom miss it.
-    std::size_t T = 0;
+    std::optional<std::size_t> T{};
     texel_reading reading = texel_reading::nearest_sample; ///< which samples a texel takes
     /// A texel without a sample of its own takes the nearest sample at most this many texels away on the same object.
     std::size_t dilation = 0;
 };
 
 /// A model of correspondence_map in texels. Geometry is compiled once for an animation: what each token reads, and per
-/// frame which token speaks for each texel that any token reads. Lookups take constant time.
+/// frame which token shows each texel that any token reads. Lookups take constant time.
 class texel_grid {
 public:
     /// A texel that some token of the animation reads, counted from 0.
@@ -50,12 +50,12 @@ public:
     };
 
     /// Compiles the UV maps for feature maps of `grid`. Throws value_error if the grid does not divide the maps, UVs
-    /// are not finite, or T exceeds 2^20.
+    /// are not finite, or T is outside [1, 2^20].
     texel_grid(uv_maps_view const& maps, grid_extents grid, texel_grid_settings const& settings = {},
                any_loop const& loop = {})
         : frames_(maps.frame_count()), grid_(grid), cell_(cell_extents("texel_grid", maps.grid(), grid)),
-          resolution_(settings.T > 0 ? texture_resolution::same(settings.T)
-                                     : texture_resolution::matched(maps, grid, texels_per_token(cell_))) {
+          resolution_(settings.T ? texture_resolution::same(*settings.T)
+                                 : texture_resolution::matched(maps, grid, texels_per_token(cell_))) {
         number_slots(maps, loop);
         visible_.resize(frames_);
         loop(frames_,
@@ -78,7 +78,7 @@ public:
         return slot == not_covered ? std::nullopt : std::optional(point_type{slot});
     }
 
-    /// The token that speaks for a texel in a frame; with texel_reading::average the one of greatest weight.
+    /// The token that shows a texel in a frame; with texel_reading::average the one of greatest weight.
     std::optional<token_index> token_at(frame_index frame, point_type point) const {
         auto const entries = visible_[frame.value].entries(point.slot);
         auto const best = std::max_element(entries.begin(), entries.end(),
@@ -86,7 +86,7 @@ public:
         return best == entries.end() ? std::nullopt : std::optional(best->token);
     }
 
-    /// Every token that speaks for a texel in a frame, with weights that sum to 1.
+    /// Every token that shows a texel in a frame, with weights that sum to 1.
     template <class Visit>
     void visit_tokens(frame_index frame, point_type point, Visit&& visit) const {
         for (auto const& entry : visible_[frame.value].entries(point.slot)) {
@@ -134,7 +134,7 @@ private:
         slot_count_ = slots_.size();
     }
 
-    /// Finds which token of one frame speaks for each texel.
+    /// Finds which token of one frame shows each texel.
     visible_texels visible_in(frame_index frame, uv_maps_view const& maps, texel_grid_settings const& settings) const {
         visible_texels::builder found(slot_count_);
         auto const map = maps.grid();

@@ -13,7 +13,7 @@
 
 namespace genrender {
 
-/// Writes T = pi^-1(F): each texel that frame i sees receives the feature of the token that speaks for it; T [slots,
+/// Writes T = pi^-1(F): each texel that frame i sees receives the feature of the token that shows it; T [slots,
 /// channels], F [tokens, channels]. Returns which slots were filled; the others of T are left as they are. Throws
 /// shape_error or value_error if they do not fit the map. The library itself never builds a texture, see blend_plan.
 template <class Real>

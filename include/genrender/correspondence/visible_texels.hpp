@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.2] Which texels a frame sees and which of its tokens speak for them, found in constant time.
+// [GR sec. 3.2] Which texels a frame sees and which of its tokens show them, found in constant time.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
@@ -21,7 +21,7 @@ namespace genrender {
 /// slot are found by its rank and invisible slots cost one bit.
 class visible_texels {
 public:
-    /// A token that speaks for a texel, with its share.
+    /// A token that shows a texel, with its share.
     struct entry {
         token_index token; ///< the token
         double weight = 1; ///< its share, in (0, 1]
@@ -92,7 +92,7 @@ public:
 
     visible_texels() = default;
 
-    /// The tokens that speak for a slot; empty where the frame does not see it.
+    /// The tokens that show a slot; empty where the frame does not see it.
     std::span<entry const> entries(std::uint32_t slot) const {
         auto const word = slot / 64;
         auto const bit = std::uint64_t{1} << (slot % 64);

@@ -41,8 +41,8 @@ concept attention_projections = requires(Projections const& module, strided_view
 template <class Real, attention_projections<Real> Projections>
 class host_attention_call {
 public:
-    using real_type = Real;
-    using features_type = host_features<Real>;
+    using real_type = Real;                    ///< type of the weights of mix
+    using features_type = host_features<Real>; ///< features in host memory
 
     /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]. Throws shape_error if f
     /// has another number of frames. `frames`, f and `module` must outlive the call.
@@ -53,16 +53,22 @@ public:
                         std::array{frames.size(), f_.extents()[1], f_.extents()[2]});
     }
 
+    /// Which site, which guidance branch.
     attention_place place() const { return place_; }
+    /// Which frame of the animation each entry of the frame axis is.
     std::span<frame_index const> frames() const { return frames_; }
+    /// The input of the module [frames, tokens, channels].
     features_type f() const { return f_; }
 
+    /// W^Q f [GR eq. 2], in new memory. Throws as the module's projection does.
     features_type query(features_type const& f) const {
         return projected(f, [this](auto out, auto in) { module_->query(out, in); });
     }
+    /// W^K f [GR eq. 2], in new memory. Throws as the module's projection does.
     features_type key(features_type const& f) const {
         return projected(f, [this](auto out, auto in) { module_->key(out, in); });
     }
+    /// W^V f [GR eq. 2], in new memory. Throws as the module's projection does.
     features_type value(features_type const& f) const {
         return projected(f, [this](auto out, auto in) { module_->value(out, in); });
     }

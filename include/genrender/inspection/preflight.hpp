@@ -105,11 +105,11 @@ void check_grids(preflight_report& report, Maps const& maps, correspondence_sett
     for (std::size_t k = 0; k < drawn.size(); ++k) {
         searches.emplace(drawn[k], std::move(*made[k]));
     }
-    auto kept = settings; // Every frame looks for tokens in all of them, one after the other.
-    kept.footprint.kept_frames = std::max(kept.footprint.kept_frames, drawn.size());
+    auto cached = settings; // Every frame looks for tokens in all of them, one after the other.
+    cached.footprint.cached_frames = std::max(cached.footprint.cached_frames, drawn.size());
     for (auto& check : report.grids) {
         try {
-            chosen_correspondence<Maps::dimensions> const map(maps, check.grid, kept, loop);
+            chosen_correspondence<Maps::dimensions> const map(maps, check.grid, cached, loop);
             check = check_grid(map, maps, report.maps.looked_at, report.keyframes, searches, tokens, loop);
         } catch (value_error const& refusal) {
             check.refusal = refusal.what();
@@ -118,10 +118,10 @@ void check_grids(preflight_report& report, Maps const& maps, correspondence_sett
 }
 
 /// Adds what the measures of the grids call for.
-inline void recommend_on_grids(preflight_report& report, correspondence_kind kind, std::size_t T,
+inline void recommend_on_grids(preflight_report& report, correspondence_kind kind, std::optional<std::size_t> T,
                                recommendation_thresholds const& from) {
     using enum recommendation_kind;
-    auto const texels = kind == correspondence_kind::texel_grid && T > 0;
+    auto const texels = kind == correspondence_kind::texel_grid && T.has_value();
     for (auto const& check : report.grids) {
         auto const recommend = [&](recommendation_kind what, double figure) {
             report.recommendations.push_back({.kind = what, .figure = figure, .grid = check.grid});

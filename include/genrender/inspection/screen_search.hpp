@@ -5,7 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/finite.hpp>
-#include <genrender/correspondence/sample_tree.hpp>
+#include <genrender/correspondence/nearest_samples.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/maps/canonical_maps.hpp>
 #include <genrender/inspection/pixel_lattice.hpp>
@@ -53,7 +53,7 @@ public:
             }
         });
         for (auto& [object, places] : points) {
-            of_object_[object].tree = sample_tree<dimensions>(std::move(places));
+            of_object_[object].nearest = nearest_samples<dimensions>(std::move(places));
         }
     }
 
@@ -64,7 +64,7 @@ public:
         if (known == of_object_.end() || !is_finite(point)) {
             return;
         }
-        known->second.tree.visit_nearest(point, [&](std::size_t number) {
+        known->second.nearest.visit_nearest(point, [&](std::size_t number) {
             if (auto const place = walk(known->second.starts[number], object, point)) {
                 visit(*place);
             }
@@ -87,7 +87,7 @@ public:
 private:
     struct object_entry {
         std::vector<pixel> starts;
-        sample_tree<dimensions> tree;
+        nearest_samples<dimensions> nearest;
     };
 
     /// Steps to where the footprint at hand takes the point to be, until that is here.

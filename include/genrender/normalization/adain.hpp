@@ -61,13 +61,13 @@ enum class adain_statistics : std::uint8_t {
 /// How latents are normalised.
 template <class Real>
 struct adain_settings {
-    bool enabled = true;
-    adain_statistics statistics = adain_statistics::mean;
+    bool enabled = true;                                  ///< whether latents are normalised at all
+    adain_statistics statistics = adain_statistics::mean; ///< what is made alike
     /// Steps in which it runs: those whose share step / steps lies in [window_begin, window_end).
     Real window_begin = 0;
     Real window_end = 1;          ///< see window_begin
     std::size_t least_pixels = 2; ///< background pixels below which `fallback` decides; at least 2
-    without_background fallback = without_background::skip;
+    without_background fallback = without_background::skip; ///< what becomes of a frame with fewer background pixels
     bool on_noisy_latents = false; ///< normalise z_{t-1} after the sampler's step instead of the clean estimates
 };
 

@@ -29,7 +29,7 @@ struct planned_bytes {
     std::size_t bank = 0;             ///< K_KF, V_KF and F_KF of all places that take part
     std::size_t residuals = 0;        ///< what the denoiser reuses of keyframes
     std::size_t keyframe_latents = 0; ///< z_KF and its estimate
-    std::size_t matching = 0;         ///< what is kept to find tokens fast, see footprint_map_settings
+    std::size_t matching = 0;         ///< the caches that find tokens fast, see footprint_map_settings
     std::size_t blend_plans = 0;      ///< of the calls under way
     std::size_t network = 0;          ///< in the calls under way, queries, keys and values included
 
@@ -55,8 +55,8 @@ struct planned_work {
 
 /// What a run of Alg. 1 will take.
 struct memory_plan {
-    planned_bytes bytes;
-    planned_work work;
+    planned_bytes bytes; ///< what it holds
+    planned_work work;   ///< what it computes
 };
 
 namespace detail {
@@ -66,7 +66,7 @@ inline std::size_t grown_capacity(std::size_t count) { return count == 0 ? 0 : s
 
 /// Bytes of what a footprint_map needs to find tokens, about.
 struct matching_bytes {
-    std::size_t kept = 0;   ///< samples of the frames that it was asked for last, matches of all frames with all that
+    std::size_t cached = 0; ///< samples of the frames that it was asked for last, matches of all frames with all that
                             ///< ever are keyframes
     std::size_t making = 0; ///< for a moment, while a thread makes the samples of a frame
 };
@@ -81,12 +81,12 @@ matching_bytes matching_of(run_description const& run, footprint_map_settings co
     }
     matching_bytes bytes;
     for (auto const count : pixels) {
-        bytes.kept += frame_samples<D>::expected_bytes(count, cell);
+        bytes.cached += frame_samples<D>::expected_bytes(count, cell);
         bytes.making += frame_samples<D>::making_bytes(count, cell);
     }
-    auto const kept_frames = std::min(std::max(settings.kept_frames, keyframes), ever_keyframes);
-    bytes.kept = bytes.kept / run.frames * kept_frames +
-                 match_cache::expected_bytes(run.frames * ever_keyframes, grid.size(), settings.kept_bytes);
+    auto const cached_frames = std::min(std::max(settings.cached_frames, keyframes), ever_keyframes);
+    bytes.cached = bytes.cached / run.frames * cached_frames +
+                   match_cache::expected_bytes(run.frames * ever_keyframes, grid.size(), settings.match_cache_bytes);
     bytes.making /= run.frames;
     return bytes;
 }
@@ -197,7 +197,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
         if (!by_texels) {
             auto const matching_of = run.map_dimensions == 3 ? detail::matching_of<3> : detail::matching_of<2>;
             auto const matching = matching_of(run, settings.correspondence.footprint, grid, m, ever_keyframes.size());
-            bytes.matching += matching.kept;
+            bytes.matching += matching.cached;
             making = std::max(making, matching.making);
         }
         auto const entries = by_texels ? detail::grown_capacity(grid.size() * m) : grid.size() * m + 1;

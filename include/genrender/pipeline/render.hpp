@@ -82,7 +82,7 @@ std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t
 /// correspondence map of a feature resolution.
 template <class Real, class Method, correspondence_map Map>
 struct render_arguments {
-    render_settings<Real> settings{};
+    render_settings<Real> settings{}; ///< how it is rendered; the paper's choices unless changed
     /// What is done in a step: a sequence_method.
     Method method{};
     /// Compiles the correspondence map of a feature grid; empty for the one that `settings.correspondence` chooses.
@@ -99,7 +99,7 @@ struct render_result {
     /// z_0 [frames, channels, height, width], the clean latents of all frames, for the user's decoder. Of a run that was
     /// cancelled, z after its last whole step; before the first, the initial noise z_T.
     latents<Real> z;
-    render_report report;
+    render_report report;      ///< what happened on the way, as far as the run came
     bool is_cancelled = false; ///< whether the observer ended the run
 };
 

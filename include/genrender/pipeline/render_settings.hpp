@@ -30,11 +30,11 @@ inline bool is_in_decoder(attention_site const& site, std::uint32_t /*branch*/) 
 /// Settings of one run of Alg. 1, or of another sequence_method, which says what it leaves unread.
 template <class Real>
 struct render_settings {
-    std::size_t steps = 50;         ///< T, denoising steps
-    Real sigma_min = Real(0.0292);  ///< lowest noise level before 0 (Stable Diffusion's)
-    Real sigma_max = Real(14.6146); ///< noise level of the initial latents
-    Real rho = 7;                   ///< spacing of the levels [EDM eq. 5]
-    sampler_kind sampler = sampler_kind::euler;
+    std::size_t steps = 50;                     ///< T, denoising steps
+    Real sigma_min = Real(0.0292);              ///< lowest noise level before 0 (Stable Diffusion's)
+    Real sigma_max = Real(14.6146);             ///< noise level of the initial latents
+    Real rho = 7;                               ///< spacing of the levels [EDM eq. 5]
+    sampler_kind sampler = sampler_kind::euler; ///< how the latents follow the estimates
 
     noise_settings noise;                   ///< sec. 3.3
     keyframe_settings keyframes;            ///< alg. 1: KF

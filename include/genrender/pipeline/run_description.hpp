@@ -22,13 +22,13 @@ namespace genrender {
 /// A run before it starts. `describe_run` fills it in from a denoiser and maps; a run of which nothing exists yet is
 /// described by hand.
 struct run_description {
-    std::size_t frames = 0;
-    std::size_t latent_channels = 0;
-    grid_extents latent_grid;
-    std::size_t branches = 1;
-    std::vector<attention_site> sites;
-    grid_extents map_grid;          ///< height and width of the maps
-    std::size_t map_dimensions = 2; ///< canonical coordinates of a map's pixel
+    std::size_t frames = 0;            ///< of the animation
+    std::size_t latent_channels = 0;   ///< of z
+    grid_extents latent_grid;          ///< height and width of z
+    std::size_t branches = 1;          ///< guidance branches
+    std::vector<attention_site> sites; ///< self-attention modules of the denoiser
+    grid_extents map_grid;             ///< height and width of the maps
+    std::size_t map_dimensions = 2;    ///< canonical coordinates of a map's pixel
     /// Pixels that each object fills in each frame, one entry an object and frame that shows it. Empty: one object that
     /// fills every frame, the most that there can be.
     std::vector<std::size_t> surface_pixels;

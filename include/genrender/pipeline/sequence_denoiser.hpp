@@ -37,8 +37,8 @@ template <denoiser Phi, correspondence_map Map,
           sequence_method<sequence_passes<Phi, Map>> Method = generative_rendering>
 class sequence_denoiser {
 public:
-    using real_type = typename Phi::real_type;
-    using features_type = typename Phi::features_type;
+    using real_type = typename Phi::real_type;         ///< scalar of the latents
+    using features_type = typename Phi::features_type; ///< the engine's handle of features
 
     /// `sigmas` are the run's noise levels; `background` [frames, height, width] of the latents. Everything but the
     /// method is referred to and must outlive the sequence denoiser.

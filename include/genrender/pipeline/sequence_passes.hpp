@@ -33,12 +33,12 @@ namespace genrender {
 /// What all evaluations of a run share. All but the loop is referred to.
 template <denoiser Phi, correspondence_map Map>
 struct sequence_run {
-    Phi const* phi;
-    correspondence_set<Map> const* maps;
-    render_settings<typename Phi::real_type> const* settings;
-    any_loop loop;
-    progress_meter* meter;
-    report_writer* report;
+    Phi const* phi;                      ///< the network
+    correspondence_set<Map> const* maps; ///< correspondence at each feature resolution that takes part
+    render_settings<typename Phi::real_type> const* settings; ///< of the run
+    any_loop loop;                                            ///< over frames and what else is independent
+    progress_meter* meter;                                    ///< tells the observer
+    report_writer* report;                                    ///< notes what happens
 };
 
 /// The passes over an animation at one noise level. A pass gives the denoiser stacks of frames with a processor, counts
@@ -46,16 +46,19 @@ struct sequence_run {
 template <denoiser Phi, correspondence_map Map>
 class sequence_passes {
 public:
-    using real_type = typename Phi::real_type;
-    using features_type = typename Phi::features_type;
+    using real_type = typename Phi::real_type;         ///< scalar of the latents
+    using features_type = typename Phi::features_type; ///< the engine's handle of features
     /// Reads z and writes the clean estimates x0, both [frames, channels, height, width]. Everything is referred to and
     /// must outlive the evaluation.
     sequence_passes(sequence_run<Phi, Map> const& run, latents<real_type>& x0, latents<real_type> const& z,
                     real_type sigma, std::size_t step)
         : run_(&run), x0_(&x0), z_(&z), sigma_(sigma), step_(step) {}
 
+    /// Settings of the run.
     render_settings<real_type> const& settings() const { return *run_->settings; }
+    /// Diffusion step, from 0.
     std::size_t step() const { return step_; }
+    /// Number of frames of the animation.
     std::size_t frame_count() const { return z_->shape()[0]; }
 
     /// Whether the settings let a place take part.

@@ -129,12 +129,17 @@ consteval void require_denoiser() {
 /// The least that a denoiser is, for checking what takes one; never run.
 template <class Real, class Features>
 struct denoiser_archetype {
-    using real_type = Real;
-    using features_type = Features;
+    using real_type = Real;         ///< scalar of the latents
+    using features_type = Features; ///< the engine's handle of features
+    /// Channels of z.
     std::size_t latent_channels() const;
+    /// Height and width of z.
     grid_extents latent_grid() const;
+    /// Its self-attention modules.
     std::span<attention_site const> sites() const;
+    /// Guidance branches that it runs.
     std::size_t branches() const;
+    /// Writes D(z, sigma) into x0.
     template <class Processor>
         requires attention_processor<Processor, attention_call_archetype<Features, Real>>
     void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,

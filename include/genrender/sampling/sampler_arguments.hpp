@@ -72,6 +72,7 @@ Latents estimate(Denoise& D, Latents const& z, Sigmas const& sigmas, std::size_t
 
 /// The default after_step of the samplers: does nothing.
 struct nothing_after_step {
+    /// Leaves the latents as they are.
     template <class Latents>
     void operator()(std::size_t, Latents&) const {}
 };

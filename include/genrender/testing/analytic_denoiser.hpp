@@ -19,22 +19,22 @@ namespace genrender::testing {
 
 /// Projections that leave features as they are: Q = K = V = f.
 struct identity_projections {
-    /// W^Q f = f of one frame.
+    /// Q = f.
     template <class Real>
     void query(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
         copy(out, in_view<Real, 2>(f));
     }
-    /// W^K f = f of one frame.
+    /// K = f.
     template <class Real>
     void key(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
         copy(out, in_view<Real, 2>(f));
     }
-    /// W^V f = f of one frame.
+    /// V = f.
     template <class Real>
     void value(strided_view<Real, 2> out, strided_view<Real const, 2> f) const {
         copy(out, in_view<Real, 2>(f));
     }
-    /// One head.
+    /// One attention head.
     std::size_t heads() const { return 1; }
 };
 
@@ -43,16 +43,16 @@ struct identity_projections {
 /// 0 the sampler's limit is known: z_0 = mean + (z_T - mean) spread / sqrt(spread^2 + sigma_T^2).
 template <class Real>
 struct analytic_denoiser {
-    using real_type = Real;
-    using features_type = host_features<Real>;
+    using real_type = Real;                    ///< scalar of the latents
+    using features_type = host_features<Real>; ///< features in host memory
 
-    grid_extents grid;                 ///< of latents and of every site
-    std::size_t channels = 3;          ///< of latents and of every site
-    Real mean = Real(0.5);             ///< of clean latents
-    Real spread = Real(0.25);          ///< standard deviation of clean latents
-    Real attention = 0;                ///< share of F in the estimate
-    std::size_t guidance_branches = 1; ///< their features differ in sign, and the estimate is their mean
-    /// The sites, of which the last shapes the estimate.
+    grid_extents grid;                 ///< height and width of the latents, and of every feature map
+    std::size_t channels = 3;          ///< of the latents and of the features
+    Real mean = Real(0.5);             ///< of the data that it is the denoiser of
+    Real spread = Real(0.25);          ///< standard deviation of these data
+    Real attention = 0;                ///< share of F in the estimate, in [0, 1]
+    std::size_t guidance_branches = 1; ///< how often each site runs
+    /// Its self-attention modules; the output of the last is F.
     std::vector<attention_site> site_list = {
         {"encoder.attn1", network_kind::denoising, network_part::encoder, grid, channels},
         {"control.attn1", network_kind::control, network_part::decoder, grid, channels},
@@ -62,12 +62,12 @@ struct analytic_denoiser {
     std::size_t latent_channels() const { return channels; }
     /// Height and width of z.
     grid_extents latent_grid() const { return grid; }
-    /// One site in the encoder, one in a control network, one in the decoder.
+    /// Its self-attention modules.
     std::span<attention_site const> sites() const { return site_list; }
-    /// Guidance branches.
+    /// Guidance branches that it runs.
     std::size_t branches() const { return guidance_branches; }
 
-    /// Writes D(z, sigma) of frames, whatever their numbers, into x0.
+    /// Writes D(z, sigma) into x0, running the processor at each site.
     template <class Processor>
     void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
                     std::span<frame_index const> frames, Processor& processor) const {

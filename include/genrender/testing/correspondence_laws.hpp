@@ -21,7 +21,7 @@ namespace genrender::testing {
 
 /// The laws that a map breaks, and how many tokens showed a point, so that a caller can see that something was checked.
 struct correspondence_report : law_report {
-    std::size_t shown_tokens = 0; ///< of all frames
+    std::size_t shown_tokens = 0; ///< tokens that showed a point, all frames together
 };
 
 namespace detail {

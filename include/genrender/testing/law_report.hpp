@@ -22,9 +22,9 @@ namespace genrender::testing {
 /// The laws that a model breaks, all of them at once, a sentence each: `concept: law: found ..., expected ...`. Of a
 /// law that is broken in many places, the first place. Empty when all laws that were checked hold.
 struct law_report {
-    std::vector<std::string> violations; ///< in the order in which they were found
+    std::vector<std::string> violations; ///< a sentence for each law that is broken
 
-    /// Whether all laws hold.
+    /// Whether every law that was checked holds.
     bool empty() const { return violations.empty(); }
 
     /// The sentences, a line each; empty when all laws hold.

@@ -26,7 +26,7 @@ namespace genrender::testing {
 /// The laws that a method breaks, and the latents of its run.
 template <class Real>
 struct sequence_method_report : law_report {
-    latents<Real> z; ///< of the run with the settings as they are
+    latents<Real> z; ///< of the run
 };
 
 /// Checks the laws of sequence_method by five whole runs over `maps`, with a denoiser whose estimates do not depend on

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The tree visits what a search through all points finds.
-#include <genrender/correspondence/sample_tree.hpp>
+// A search visits the points that sorting all of them finds.
+#include <genrender/correspondence/nearest_samples.hpp>
 
 #include <genrender/core/random.hpp>
 
@@ -27,9 +27,9 @@ std::array<float, D> random_place(std::uint32_t kind, std::uint32_t number) {
 }
 
 template <std::size_t D>
-std::vector<std::size_t> visited_by(sample_tree<D> const& tree, std::array<float, D> const& place) {
+std::vector<std::size_t> visited_by(nearest_samples<D> const& samples, std::array<float, D> const& place) {
     std::vector<std::size_t> numbers;
-    tree.visit_nearest(place, [&](std::size_t number) { numbers.push_back(number); });
+    samples.visit_nearest(place, [&](std::size_t number) { numbers.push_back(number); });
     return numbers;
 }
 
@@ -49,7 +49,7 @@ void check_against_all_points(std::uint32_t count) {
     for (std::uint32_t number = 0; number < count; ++number) {
         places.push_back(random_place<D>(0, number));
     }
-    sample_tree<D> const tree(places);
+    nearest_samples<D> const samples(places);
     for (std::uint32_t question = 0; question < 100; ++question) {
         auto const place = random_place<D>(1, question);
         std::vector<std::size_t> nearest(places.size());
@@ -57,14 +57,14 @@ void check_against_all_points(std::uint32_t count) {
         std::sort(nearest.begin(), nearest.end(), [&](std::size_t a, std::size_t b) {
             return squared_distance(places[a], place) < squared_distance(places[b], place);
         });
-        nearest.resize(sample_tree<D>::visited);
-        CHECK(visited_by(tree, place) == nearest);
+        nearest.resize(nearest_samples<D>::visited);
+        CHECK(visited_by(samples, place) == nearest);
     }
 }
 
 } // namespace
 
-TEST_SUITE("correspondence/sample_tree") {
+TEST_SUITE("correspondence/nearest_samples") {
     TEST_CASE("the points visited are the nearest of all in two dimensions") {
         check_against_all_points<2>(700);
         check_against_all_points<2>(90);
@@ -75,31 +75,31 @@ TEST_SUITE("correspondence/sample_tree") {
     }
 
     TEST_CASE("fewer points than a search visits are all visited with the nearest first") {
-        sample_tree<2> const tree({{0, 0}, {4, 0}, {1, 0}});
-        CHECK(visited_by<2>(tree, {1.25F, 0}) == std::vector<std::size_t>{2, 0, 1});
-        CHECK(visited_by<2>(tree, {100, 0}) == std::vector<std::size_t>{1, 2, 0});
+        nearest_samples<2> const samples({{0, 0}, {4, 0}, {1, 0}});
+        CHECK(visited_by<2>(samples, {1.25F, 0}) == std::vector<std::size_t>{2, 0, 1});
+        CHECK(visited_by<2>(samples, {100, 0}) == std::vector<std::size_t>{1, 2, 0});
     }
 
     TEST_CASE("points at one place are points of their own") {
         std::vector<std::array<float, 3>> places(30, {1, 2, 3});
         places.push_back({0, 0, 0});
-        auto numbers = visited_by<3>(sample_tree<3>(places), {1, 2, 3});
-        CHECK(numbers.size() == sample_tree<3>::visited);
+        auto numbers = visited_by<3>(nearest_samples<3>(places), {1, 2, 3});
+        CHECK(numbers.size() == nearest_samples<3>::visited);
         std::sort(numbers.begin(), numbers.end());
         CHECK(std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end());
         CHECK(numbers.back() < 30);
-        CHECK(visited_by<3>(sample_tree<3>(places), {0, 0, 0}).front() == 30);
+        CHECK(visited_by<3>(nearest_samples<3>(places), {0, 0, 0}).front() == 30);
     }
 
-    TEST_CASE("a tree without points visits nothing") {
-        CHECK(visited_by<2>(sample_tree<2>(), {0, 0}).empty());
-        CHECK(visited_by<2>(sample_tree<2>(std::vector<std::array<float, 2>>{}), {0, 0}).empty());
+    TEST_CASE("a search without points visits nothing") {
+        CHECK(visited_by<2>(nearest_samples<2>(), {0, 0}).empty());
+        CHECK(visited_by<2>(nearest_samples<2>(std::vector<std::array<float, 2>>{}), {0, 0}).empty());
     }
 
     TEST_CASE("a copy answers when the first is gone") {
-        sample_tree<2> copy;
+        nearest_samples<2> copy;
         {
-            sample_tree<2> const first({{0, 0}, {1, 1}});
+            nearest_samples<2> const first({{0, 0}, {1, 1}});
             copy = first;
         }
         CHECK(visited_by<2>(copy, {1, 1}) == std::vector<std::size_t>{1, 0});
