@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,7 +37,7 @@ TEST_SUITE("noise/initial_noise") {
 
     /// Settings of the paper's own reading of noise textures.
     noise_settings by_texel(noise_kind kind, background_noise background, std::size_t T, std::uint64_t seed) {
-        return {kind, background, T, seed, noise_reading::nearest_texel, {}};
+        return {kind, background, T > 0 ? std::optional(T) : std::nullopt, seed, noise_reading::nearest_texel, {}};
     }
 
     std::vector<frame_index> all_frames(uv_maps const& maps) {
@@ -177,8 +178,8 @@ TEST_SUITE("noise/initial_noise") {
             auto const frames = all_frames(maps);
             auto const uv =
                 correlation_along(maps, noise_of(maps, 64, {16, 16}, frames, by_texel(noise_kind::uv, {}, 0, 5)), 2);
-            auto const independent =
-                correlation_along(maps, noise_of(maps, 64, {16, 16}, frames, {noise_kind::independent, {}, 0, 5}), 2);
+            auto const independent = correlation_along(
+                maps, noise_of(maps, 64, {16, 16}, frames, {noise_kind::independent, {}, std::nullopt, 5}), 2);
             REQUIRE(uv.pairs > 40);
             // The nearest texel of about a pixel's size is shared about half the time.
             CHECK(uv.correlation > 0.3);
@@ -256,8 +257,9 @@ TEST_SUITE("noise/initial_noise") {
         CHECK(equal_fixed == 128);
         CHECK(equal_independent == 0);
         // They are the noise of the ablations, so a frame's background does not depend on what else is in view.
-        CHECK(equal_bits(fixed, noise_of(nothing, 2, {8, 8}, frames, {noise_kind::fixed, {}, 0, 1})));
-        CHECK(equal_bits(independent, noise_of(nothing, 2, {8, 8}, frames, {noise_kind::independent, {}, 0, 1})));
+        CHECK(equal_bits(fixed, noise_of(nothing, 2, {8, 8}, frames, {noise_kind::fixed, {}, std::nullopt, 1})));
+        CHECK(equal_bits(independent,
+                         noise_of(nothing, 2, {8, 8}, frames, {noise_kind::independent, {}, std::nullopt, 1})));
     }
 
     TEST_CASE("the ablations do not look at the objects") {
