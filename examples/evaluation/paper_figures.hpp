@@ -5,8 +5,6 @@
 #include "measures.hpp"
 
 #include <array>
-#include <cstddef>
-#include <optional>
 #include <string_view>
 
 namespace genrender::examples {

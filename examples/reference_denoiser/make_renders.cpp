@@ -21,7 +21,6 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <string>
 #include <vector>
 
 using namespace genrender;

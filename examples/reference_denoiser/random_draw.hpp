@@ -8,7 +8,6 @@
 #include <glm/vec3.hpp>
 
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <numbers>
 

@@ -17,7 +17,6 @@
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace genrender::scenes {

@@ -8,7 +8,6 @@
 #include <genrender/inspection/preflight.hpp>
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

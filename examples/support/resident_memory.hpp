@@ -2,9 +2,7 @@
 // How much memory of the machine the program holds, and the most that a part of it held, as Linux tells.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <string>

@@ -17,8 +17,6 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>

@@ -6,8 +6,6 @@
 
 #include <genrender/pipeline/render_settings.hpp>
 
-#include <utility>
-
 namespace genrender {
 
 /// The settings of a run turned into the Per-Frame baseline: no keyframes, no injection, no latent normalisation, and

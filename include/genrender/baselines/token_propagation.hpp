@@ -10,7 +10,6 @@
 #include <genrender/keyframes/feature_bank.hpp>
 
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <type_traits>
 #include <utility>

@@ -10,13 +10,10 @@
 #include <genrender/correspondence/reproject.hpp>
 #include <genrender/correspondence/token_matches.hpp>
 
-#include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>

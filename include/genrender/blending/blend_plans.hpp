@@ -10,7 +10,6 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/sparse_rows.hpp>
 
-#include <cstddef>
 #include <map>
 #include <span>
 #include <string>

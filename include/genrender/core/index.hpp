@@ -4,7 +4,6 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <concepts>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>

@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace genrender {
 

@@ -8,7 +8,6 @@
 #include <genrender/maps/cell_extents.hpp>
 #include <genrender/maps/uv_maps_view.hpp>
 
-#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>

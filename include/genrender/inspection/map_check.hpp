@@ -11,7 +11,6 @@
 #include <genrender/inspection/object_check.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>

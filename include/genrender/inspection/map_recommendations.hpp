@@ -8,7 +8,6 @@
 #include <genrender/inspection/recommendation.hpp>
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>

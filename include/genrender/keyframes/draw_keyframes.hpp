@@ -8,7 +8,6 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/random.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <set>

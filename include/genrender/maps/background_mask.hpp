@@ -9,7 +9,6 @@
 #include <genrender/maps/canonical_maps.hpp>
 #include <genrender/maps/cell_extents.hpp>
 
-#include <cstddef>
 #include <cstdint>
 
 namespace genrender {

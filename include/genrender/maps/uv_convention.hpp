@@ -7,7 +7,6 @@
 #include <genrender/core/finite.hpp>
 #include <genrender/core/strided_view.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 

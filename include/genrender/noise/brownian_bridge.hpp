@@ -4,7 +4,6 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <cmath>
 #include <cstddef>
 #include <span>
 

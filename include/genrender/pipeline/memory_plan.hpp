@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
-#include <vector>
 
 namespace genrender {
 

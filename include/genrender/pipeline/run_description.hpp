@@ -10,7 +10,6 @@
 #include <genrender/maps/canonical_maps.hpp>
 #include <genrender/sampling/denoiser.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -36,7 +35,7 @@ struct run_description {
     /// The most memory that a call of the denoiser takes: for each frame of its stack, features included, and besides.
     /// None if unknown: then the features of the largest site alone are counted.
     std::optional<std::size_t> network_bytes;
-    std::optional<std::size_t> call_bytes;
+    std::optional<std::size_t> call_bytes; ///< see network_bytes
     /// What a denoiser keeps of a keyframe to reuse it (residual_lender), a frame; none for one that does not.
     std::optional<std::size_t> residual_bytes;
 };

@@ -9,7 +9,6 @@
 #include <genrender/reference/unet_encoder.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

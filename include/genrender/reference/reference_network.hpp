@@ -19,7 +19,6 @@
 #include <genrender/sampling/noise_schedule.hpp>
 #include <genrender/sampling/preconditioning.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>

@@ -15,7 +15,6 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>

@@ -9,7 +9,6 @@
 #include <genrender/core/linear_combination.hpp>
 #include <genrender/core/strided_view.hpp>
 
-#include <cstddef>
 #include <type_traits>
 
 // A guided network runs once a guidance branch. Branch 0 is the unconditional one (the empty or the negative prompt),

@@ -8,7 +8,6 @@
 #include <genrender/sampling/sampler_arguments.hpp>
 
 #include <cstddef>
-#include <utility>
 
 namespace genrender {
 

@@ -8,8 +8,6 @@
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/sampling/denoiser.hpp>
 
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -18,7 +18,6 @@
 #include <map>
 #include <mutex>
 #include <span>
-#include <string>
 #include <type_traits>
 #include <vector>
 

@@ -12,9 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace genrender::testing {
