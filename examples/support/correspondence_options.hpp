@@ -2,18 +2,16 @@
 // The options of the command line that say how pixels are matched and what noise they start from.
 #pragma once
 
+#include "names.hpp"
+
 #include <genrender/pipeline/render_settings.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace genrender::examples {
 
@@ -22,11 +20,18 @@ enum class canonical_coordinates : std::uint8_t { uv, position };
 
 /// What the options say, in the words of the command line.
 struct correspondence_options {
-    static constexpr std::array<std::string_view, 2> canonical_names{"uv", "position"};
-    static constexpr std::array<std::string_view, 2> correspondence_names{"footprint", "texels"};
-    static constexpr std::array<std::string_view, 2> average_names{"plain", "quality"};
-    static constexpr std::array<std::string_view, 3> noise_names{"surface", "nearest", "bilinear"};
-    static constexpr std::array<std::string_view, 3> background_names{"fixed", "independent", "environment"};
+    static constexpr named<canonical_coordinates> canonical_names[]{{"uv", canonical_coordinates::uv},
+                                                                    {"position", canonical_coordinates::position}};
+    static constexpr named<correspondence_kind> correspondence_names[]{{"footprint", correspondence_kind::footprint},
+                                                                       {"texels", correspondence_kind::texel_grid}};
+    static constexpr named<texel_average> average_names[]{{"plain", texel_average::plain},
+                                                          {"quality", texel_average::by_quality}};
+    static constexpr named<noise_reading> reading_names[]{{"surface", noise_reading::surface},
+                                                          {"nearest", noise_reading::nearest_texel},
+                                                          {"bilinear", noise_reading::bilinear_texel}};
+    static constexpr named<background_noise> background_names[]{{"fixed", background_noise::fixed},
+                                                                {"independent", background_noise::independent},
+                                                                {"environment", background_noise::environment}};
 
     std::string canonical = "uv";
     std::string correspondence = "footprint";
@@ -42,7 +47,7 @@ struct correspondence_options {
         auto const add = [group](char const* name, std::string& value, auto const& names, char const* text) {
             group->add_option(name, value, text)
                 ->capture_default_str()
-                ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())).description(""))
+                ->check(CLI::IsMember(all_names(names)).description(""))
                 ->type_name("KIND");
         };
         add("--canonical", canonical, canonical_names,
@@ -53,7 +58,7 @@ struct correspondence_options {
         add("--average", average, average_names,
             "of keyframes: by quality (how many pixels see the surface, how pure the cell), or plain,\n"
             "which is the paper's (quality; with texels plain)");
-        add("--noise-reading", noise, noise_names,
+        add("--noise-reading", noise, reading_names,
             "surface (white in every frame), or one texel: nearest (the paper's), bilinear");
         add("--background", background, background_names,
             "noise where no object is: fixed to the screen, independent, or environment (turns with\n"
@@ -73,13 +78,13 @@ struct correspondence_options {
     /// Turns `settings` to what was told. Throws CLI::ValidationError where options contradict each other.
     template <class Real>
     void apply_to(render_settings<Real>& settings) const {
-        settings.correspondence.kind = chosen<correspondence_kind>(correspondence, correspondence_names);
+        settings.correspondence.kind = value_in(correspondence_names, correspondence);
         settings.correspondence.texels.T = feature_texels > 0 ? std::optional(feature_texels) : std::nullopt;
-        settings.noise.reading = chosen<noise_reading>(noise, noise_names);
+        settings.noise.reading = value_in(reading_names, noise);
         settings.noise.T = noise_texels > 0 ? std::optional(noise_texels) : std::nullopt;
-        settings.noise.background = chosen<background_noise>(background, background_names);
+        settings.noise.background = value_in(background_names, background);
         auto const has_texels = settings.correspondence.kind == correspondence_kind::texel_grid;
-        settings.average = !average.empty() ? chosen<texel_average>(average, average_names)
+        settings.average = !average.empty() ? value_in(average_names, average)
                            : has_texels     ? texel_average::plain
                                             : texel_average::by_quality;
         auto const has_noise_texels = settings.noise.reading != noise_reading::surface;
@@ -94,14 +99,9 @@ struct correspondence_options {
                 "position has no texels: --correspondence footprint and --noise-reading surface");
     }
 
-    canonical_coordinates coordinates() const { return chosen<canonical_coordinates>(canonical, canonical_names); }
+    canonical_coordinates coordinates() const { return value_in(canonical_names, canonical); }
 
 private:
-    template <class Kind>
-    static Kind chosen(std::string const& name, auto const& names) {
-        return static_cast<Kind>(std::find(names.begin(), names.end(), name) - names.begin());
-    }
-
     static void require(bool holds, char const* option, char const* text) {
         if (!holds) {
             throw CLI::ValidationError(option, text);

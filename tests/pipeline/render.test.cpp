@@ -352,7 +352,7 @@ TEST_SUITE("pipeline/render") {
                              "render: UV.frame_count() is 0, expected at least one frame", value_error);
         uv_maps const odd(3, {30, 32});
         CHECK_THROWS_WITH_AS(render(phi, to_uv_view(odd), {.settings = few_steps()}),
-                             "initial_noise: grid is [8, 8], expected extents that divide the maps' [30, 32]",
+                             "render: grid is [8, 8], expected extents that divide the maps' [30, 32]",
                              value_error);
     }
 }

@@ -7,6 +7,7 @@
 
 #include <genrender/core/finite.hpp>
 #include <genrender/maps/background_mask.hpp>
+#include <genrender/maps/cell_extents.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 
@@ -173,9 +174,10 @@ render(Phi const& phi, Maps const& UV,
         auto const& loop = arguments.loop;
         require_render_settings(settings, UV.frame_count());
         require_finite_coordinates(UV);
+        auto const grid = grid_extents(phi.latent_grid());
+        cell_extents("render", UV.grid(), grid);
         auto const sigmas = karras_schedule<Real>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
         auto const N = UV.frame_count();
-        auto const grid = grid_extents(phi.latent_grid());
         auto const total = frames_to_denoise(settings, N, method);
 
         auto const start = std::chrono::steady_clock::now();
