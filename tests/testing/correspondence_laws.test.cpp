@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -45,7 +46,7 @@ TEST_SUITE("testing/correspondence_laws") {
         using point_type = std::uint32_t;
         mistake made = mistake::none;
         std::thread::id home = std::this_thread::get_id();
-        mutable std::size_t asked = 0;
+        mutable std::atomic<std::size_t> asked{0};
 
         std::size_t frame_count() const { return 3; }
         grid_extents grid() const { return {1, 4}; }
