@@ -352,7 +352,6 @@ TEST_SUITE("pipeline/render") {
                              "render: UV.frame_count() is 0, expected at least one frame", value_error);
         uv_maps const odd(3, {30, 32});
         CHECK_THROWS_WITH_AS(render(phi, to_uv_view(odd), {.settings = few_steps()}),
-                             "render: grid is [8, 8], expected extents that divide the maps' [30, 32]",
-                             value_error);
+                             "render: grid is [8, 8], expected extents that divide the maps' [30, 32]", value_error);
     }
 }
