@@ -6,12 +6,19 @@
 #include <doctest/doctest.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 int main(int argc, char** argv) {
-    // What GENRENDER_VECTOR_TARGET asks for may be more than this processor has: then ctest calls the test skipped.
+    // GENRENDER_VECTOR_TARGET may ask for more than this processor has, or for what runs here anyway, a process a case:
+    // then ctest calls the test skipped.
     constexpr int skipped = 77;
     try {
-        genrender::chosen_vector_target();
+        auto const asked = genrender::chosen_vector_target();
+        if (std::getenv("GENRENDER_VECTOR_TARGET") != nullptr &&
+            asked == genrender::available_vector_targets().back()) {
+            std::puts("The cases by themselves run at this vector target.");
+            return skipped;
+        }
     } catch (genrender::value_error const& error) {
         std::puts(error.what());
         return skipped;
