@@ -98,7 +98,8 @@ inline std::size_t texel_bytes(run_description const& run, grid_extents grid) {
            grown_capacity(grid.size()) * entry * run.frames;
 }
 
-/// Stacks of the latents' size that live while D is evaluated, that of the result included; updates between evaluations add none.
+/// Stacks of the latents' size that live while D is evaluated, that of the result included; updates between evaluations
+/// add none.
 inline std::size_t latent_stacks(sampler_kind sampler) {
     switch (sampler) {
     case sampler_kind::heun:

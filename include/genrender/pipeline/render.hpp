@@ -78,11 +78,11 @@ std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t
     return total;
 }
 
-/// What a run needs besides a denoiser and maps, by name. All but the settings has a default. `Map` is the
+/// What a run needs besides a denoiser and maps, by name; all have defaults. `Map` is the
 /// correspondence map of a feature resolution.
 template <class Real, class Method, correspondence_map Map>
 struct render_arguments {
-    render_settings<Real> settings{}; ///< how it is rendered; the paper's choices unless changed
+    render_settings<Real> settings{}; ///< how it is rendered
     /// What is done in a step: a sequence_method.
     Method method{};
     /// Compiles the correspondence map of a feature grid; empty for the one that `settings.correspondence` chooses.
