@@ -31,6 +31,7 @@ genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nl
 set(genrender_components "")
 genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     genrender.hpp
+    compiled.hpp
     version.hpp
     core/begin_header.inl
     core/each_target.inl
@@ -40,6 +41,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     core/half_precision.hpp
     core/half_storage.hpp
     core/index.hpp
+    core/instance.hpp
     core/linalg.hpp
     core/linear_combination.hpp
     core/linear_combination.inl
@@ -72,6 +74,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     correspondence/object_samples.hpp
     correspondence/representative_pixel.hpp
     correspondence/reproject.hpp
+    correspondence/sample_source.hpp
     correspondence/surface_footprint.hpp
     correspondence/surface_sample.hpp
     correspondence/texel_grid.hpp

@@ -14,6 +14,7 @@
 #include <genrender/core/half_precision.hpp>
 #include <genrender/core/half_storage.hpp>
 #include <genrender/core/index.hpp>
+#include <genrender/core/instance.hpp>
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/linear_combination.hpp>
 #include <genrender/core/parallel.hpp>
@@ -45,6 +46,7 @@
 #include <genrender/correspondence/object_samples.hpp>
 #include <genrender/correspondence/representative_pixel.hpp>
 #include <genrender/correspondence/reproject.hpp>
+#include <genrender/correspondence/sample_source.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/correspondence/texel_grid.hpp>

@@ -7,6 +7,7 @@
 #include <genrender/attention/attention_scratch.hpp>
 #include <genrender/attention/attention_tile.hpp>
 #include <genrender/attention/key_value_view.hpp>
+#include <genrender/core/instance.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 
@@ -75,6 +76,9 @@ void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
                detail::head_of(Q.slice(first, count), head, head_size), blocks, head);
     });
 }
+
+GENRENDER_INSTANCE(scaled_dot_product<float>);
+GENRENDER_INSTANCE(scaled_dot_product<double>);
 
 } // namespace GENRENDER_UNIT
 

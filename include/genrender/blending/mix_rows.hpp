@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/half_storage.hpp>
+#include <genrender/core/instance.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -57,6 +58,11 @@ void mix_stored_rows(strided_view<Real, 2> F, strided_view<Stored const, 3> cons
         mix(F, F_KF, rows, alpha, call * tokens_a_call, std::min((call + 1) * tokens_a_call, tokens));
     });
 }
+
+GENRENDER_INSTANCE(mix_stored_rows<float, float>);
+GENRENDER_INSTANCE(mix_stored_rows<float, float16_bits>);
+GENRENDER_INSTANCE(mix_stored_rows<float, bfloat16_bits>);
+GENRENDER_INSTANCE(mix_stored_rows<double, double>);
 
 } // namespace GENRENDER_UNIT
 

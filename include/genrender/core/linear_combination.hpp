@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/instance.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 
@@ -16,6 +17,26 @@
 
 namespace genrender {
 
+namespace detail {
+
+inline namespace GENRENDER_UNIT {
+
+/// linear_combination of neighbouring elements.
+template <class Real, std::size_t Terms>
+void combine_values(Real* out, std::size_t count, std::array<Real, Terms> const& factors,
+                    std::array<Real const*, Terms> const& in) {
+    GENRENDER_KERNEL(detail, combine<Real, Terms>)(out, count, factors, in);
+}
+
+GENRENDER_INSTANCE(combine_values<float, 2>);
+GENRENDER_INSTANCE(combine_values<float, 3>);
+GENRENDER_INSTANCE(combine_values<double, 2>);
+GENRENDER_INSTANCE(combine_values<double, 3>);
+
+} // namespace GENRENDER_UNIT
+
+} // namespace detail
+
 inline namespace GENRENDER_UNIT {
 
 /// out[e] = factors[0] * in[0][e] + factors[1] * in[1][e] + ... for `count` neighbouring elements each. `out` may be
@@ -23,7 +44,7 @@ inline namespace GENRENDER_UNIT {
 template <class Real, std::size_t Terms>
 void linear_combination(Real* out, std::size_t count, std::array<Real, Terms> const& factors,
                         std::array<Real const*, Terms> const& in) {
-    GENRENDER_KERNEL(detail, combine<Real, Terms>)(out, count, factors, in);
+    detail::combine_values(out, count, factors, in);
 }
 
 /// The same for views of equal extents and any strides.

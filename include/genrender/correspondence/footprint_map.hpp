@@ -7,10 +7,11 @@
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
+#include <genrender/core/instance.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/frame_cache.hpp>
 #include <genrender/correspondence/frame_samples.hpp>
-#include <genrender/correspondence/representative_pixel.hpp>
+#include <genrender/correspondence/sample_source.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/token_matches.hpp>
 #include <genrender/maps/canonical_maps.hpp>
@@ -60,9 +61,7 @@ public:
           frame_cache_(std::make_shared<frame_cache<frame_samples<D>>>(settings.cached_frames)) {
         require_value(settings.reach > 0, "footprint_map", "settings.reach", settings.reach, "a number above 0");
         cell_extents("footprint_map", maps.grid(), grid);
-        auto const source = std::make_shared<source_of<Maps>>(maps, grid, settings.reach);
-        loop(maps.frame_count(), [&](std::size_t i) { source->read({static_cast<std::uint32_t>(i)}); });
-        source_ = source;
+        source_ = detail::read_samples(maps, grid, settings.reach, loop);
     }
 
     /// Frames of the maps.
@@ -84,24 +83,7 @@ public:
 
     /// The same for the points of all tokens of a frame, in each of several others. What was asked once is in a
     /// cache, see footprint_map_settings::match_cache_bytes.
-    std::vector<std::shared_ptr<token_matches const>> matches(frame_index from, std::span<frame_index const> to) const {
-        std::vector<std::shared_ptr<token_matches const>> result(to.size());
-        frame_cache_->grow_to(to.size());
-        // Points are read once for all that the cache has not, and no call allocates them anew.
-        thread_local std::vector<std::optional<point_type>> points;
-        points.clear();
-        for (std::size_t n = 0; n < to.size(); ++n) {
-            // Neighbouring frames, which other threads ask for, begin elsewhere: each makes other frames ready.
-            auto const k = (from.value + n) % to.size();
-            result[k] = match_cache_->of(from, to[k], [&] {
-                for (std::uint32_t t = 0; points.size() < grid_.size(); ++t) {
-                    points.push_back(point_at(from, {t}));
-                }
-                return match(points, *samples_in(to[k]));
-            });
-        }
-        return result;
-    }
+    std::vector<std::shared_ptr<token_matches const>> matches(frame_index from, std::span<frame_index const> to) const;
 
     /// How well a frame shows a point, for averages over keyframes: the share of the cell that the point's object owns
     /// times how many of the frame's pixels a unit of surface fills; 0 where the frame does not show it.
@@ -112,81 +94,10 @@ public:
 
     /// Bytes of a map of `frames` frames and so many tokens, about, besides its caches.
     static constexpr std::size_t expected_bytes(std::size_t frames, std::size_t tokens) {
-        return frames * (sizeof(representatives) + tokens * sizeof(std::uint32_t) + tokens / 8);
+        return frames * (sizeof(detail::representative_pixels) + tokens * sizeof(std::uint32_t) + tokens / 8);
     }
 
 private:
-    /// The pixels that stand for the tokens of a frame.
-    struct representatives {
-        std::vector<std::uint32_t> numbers; ///< row * width + column, of tokens that have one
-        std::vector<bool> is_there;
-    };
-
-    /// Maps of any type, and the pixel that stands for each token.
-    struct source_type {
-        virtual ~source_type() = default;
-        virtual std::size_t frame_count() const = 0;
-        virtual std::optional<point_type> point_at(frame_index i, token_index token) const = 0;
-        virtual frame_samples<D> samples_in(frame_index i) const = 0;
-    };
-
-    template <canonical_maps Maps>
-    class source_of final : public source_type {
-    public:
-        source_of(Maps const& maps, grid_extents grid, double reach)
-            : maps_(maps), grid_(grid), reach_(reach), representatives_(maps.frame_count()) {}
-
-        /// Checks a frame and remembers which pixels stand for its tokens.
-        void read(frame_index i) {
-            auto& of_frame = representatives_[i.value];
-            of_frame.numbers.resize(grid_.size());
-            of_frame.is_there.resize(grid_.size());
-            for (std::uint32_t t = 0; t < grid_.size(); ++t) {
-                if (auto const p = representative_pixel(maps_, i, grid_, {t})) {
-                    of_frame.numbers[t] = static_cast<std::uint32_t>(p->row * maps_.grid().width + p->column);
-                    of_frame.is_there[t] = true;
-                }
-            }
-            require_finite(i);
-        }
-
-        std::size_t frame_count() const override { return representatives_.size(); }
-
-        std::optional<point_type> point_at(frame_index i, token_index token) const override {
-            auto const p = representative_of(i, token);
-            return p ? std::optional(
-                           point_type{maps_.object_at(i, *p), maps_.point_at(i, *p), footprint_at(maps_, i, *p)})
-                     : std::nullopt;
-        }
-
-        frame_samples<D> samples_in(frame_index i) const override {
-            return {maps_, i, grid_, reach_, [&](token_index token) { return representative_of(i, token); }};
-        }
-
-    private:
-        std::optional<pixel> representative_of(frame_index i, token_index token) const {
-            auto const& of_frame = representatives_[i.value];
-            auto const width = static_cast<std::uint32_t>(maps_.grid().width);
-            auto const number = of_frame.numbers[token.value];
-            return of_frame.is_there[token.value] ? std::optional(pixel{number / width, number % width}) : std::nullopt;
-        }
-
-        void require_finite(frame_index i) const {
-            for (std::uint32_t row = 0; row < maps_.grid().height; ++row) {
-                for (std::uint32_t column = 0; column < maps_.grid().width; ++column) {
-                    if (maps_.is_covered(i, {row, column})) {
-                        detail::require_finite_point("footprint_map", maps_.point_at(i, {row, column}));
-                    }
-                }
-            }
-        }
-
-        Maps maps_;
-        grid_extents grid_;
-        double reach_;
-        std::vector<representatives> representatives_; ///< [frames]
-    };
-
     std::shared_ptr<frame_samples<D> const> samples_in(frame_index i) const {
         return frame_cache_->of(i, [&] { return source_->samples_in(i); });
     }
@@ -216,11 +127,35 @@ private:
     }
 
     grid_extents grid_;
-    std::shared_ptr<source_type const> source_;
+    std::shared_ptr<detail::sample_source<D> const> source_;
     // Shared by copies, for which all is the same.
     std::shared_ptr<match_cache> match_cache_;
     std::shared_ptr<frame_cache<frame_samples<D>>> frame_cache_;
 };
+
+template <std::size_t D>
+std::vector<std::shared_ptr<token_matches const>> footprint_map<D>::matches(frame_index from,
+                                                                            std::span<frame_index const> to) const {
+    std::vector<std::shared_ptr<token_matches const>> result(to.size());
+    frame_cache_->grow_to(to.size());
+    // Points are read once for all that the cache has not, and no call allocates them anew.
+    thread_local std::vector<std::optional<point_type>> points;
+    points.clear();
+    for (std::size_t n = 0; n < to.size(); ++n) {
+        // Neighbouring frames, which other threads ask for, begin elsewhere: each makes other frames ready.
+        auto const k = (from.value + n) % to.size();
+        result[k] = match_cache_->of(from, to[k], [&] {
+            for (std::uint32_t t = 0; points.size() < grid_.size(); ++t) {
+                points.push_back(point_at(from, {t}));
+            }
+            return match(points, *samples_in(to[k]));
+        });
+    }
+    return result;
+}
+
+GENRENDER_CLASS_INSTANCE(footprint_map<2>);
+GENRENDER_CLASS_INSTANCE(footprint_map<3>);
 
 /// Deduces the dimensions from the maps.
 template <canonical_maps Maps>

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/index.hpp>
+#include <genrender/core/instance.hpp>
 #include <genrender/correspondence/nearest_samples.hpp>
 #include <genrender/correspondence/surface_footprint.hpp>
 #include <genrender/correspondence/token_matches.hpp>
@@ -43,36 +44,10 @@ public:
     };
 
     /// Of pixels in a frame whose cells have `cell` pixels. A sample reaches `reach` half cells.
-    object_samples(std::vector<sample> samples, double reach, grid_extents cell)
-        : reach_(reach), height_(static_cast<double>(cell.height)), width_(static_cast<double>(cell.width)),
-          samples_(std::move(samples)) {
-        samples_.shrink_to_fit();
-        std::vector<std::array<float, D>> places;
-        places.reserve(samples_.size());
-        for (auto const& s : samples_) {
-            places.push_back(s.place);
-        }
-        nearest_ = nearest_samples<D>(std::move(places));
-    }
+    object_samples(std::vector<sample> samples, double reach, grid_extents cell);
 
     /// The sample that shows a point; null if none does.
-    sample const* sample_of(point_type const& point) const {
-        sample const* closest = nullptr;
-        double closest_distance = 0;
-        nearest_.visit_nearest(point.place, [&](std::size_t number) {
-            auto const& candidate = samples_[number];
-            auto const distance = screen_distance(candidate, point);
-            if (!distance || *distance > reach_) {
-                return;
-            }
-            if (closest == nullptr ||
-                std::pair(*distance, candidate.match.token) < std::pair(closest_distance, closest->match.token)) {
-                closest = &candidate;
-                closest_distance = *distance;
-            }
-        });
-        return closest;
-    }
+    sample const* sample_of(point_type const& point) const;
 
     /// Bytes of so many samples, about.
     static constexpr std::size_t expected_bytes(std::size_t count) {
@@ -108,6 +83,41 @@ private:
     std::vector<sample> samples_;
     nearest_samples<D> nearest_; ///< of the samples' places, by the same numbers
 };
+
+template <std::size_t D>
+object_samples<D>::object_samples(std::vector<sample> samples, double reach, grid_extents cell)
+    : reach_(reach), height_(static_cast<double>(cell.height)), width_(static_cast<double>(cell.width)),
+      samples_(std::move(samples)) {
+    samples_.shrink_to_fit();
+    std::vector<std::array<float, D>> places;
+    places.reserve(samples_.size());
+    for (auto const& s : samples_) {
+        places.push_back(s.place);
+    }
+    nearest_ = nearest_samples<D>(std::move(places));
+}
+
+template <std::size_t D>
+auto object_samples<D>::sample_of(point_type const& point) const -> sample const* {
+    sample const* closest = nullptr;
+    double closest_distance = 0;
+    nearest_.visit_nearest(point.place, [&](std::size_t number) {
+        auto const& candidate = samples_[number];
+        auto const distance = screen_distance(candidate, point);
+        if (!distance || *distance > reach_) {
+            return;
+        }
+        if (closest == nullptr ||
+            std::pair(*distance, candidate.match.token) < std::pair(closest_distance, closest->match.token)) {
+            closest = &candidate;
+            closest_distance = *distance;
+        }
+    });
+    return closest;
+}
+
+GENRENDER_CLASS_INSTANCE(object_samples<2>);
+GENRENDER_CLASS_INSTANCE(object_samples<3>);
 
 } // namespace genrender
 

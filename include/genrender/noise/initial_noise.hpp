@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/instance.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/correspondence/surface_sample.hpp>
 #include <genrender/noise/background_noise.hpp>
@@ -140,6 +141,9 @@ void initial_noise(strided_view<Real, 4> z, Maps const& maps, std::span<frame_in
             "initial_noise: settings.reading is of texels, expected surface for maps that are not UV maps");
     }
 }
+
+GENRENDER_INSTANCE(initial_noise<float, uv_maps_view>);
+GENRENDER_INSTANCE(initial_noise<double, uv_maps_view>);
 
 } // namespace genrender
 

@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/instance.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
@@ -117,6 +118,9 @@ std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view
     }
     return skipped;
 }
+
+GENRENDER_INSTANCE(normalize_latents<float>);
+GENRENDER_INSTANCE(normalize_latents<double>);
 
 } // namespace GENRENDER_UNIT
 

@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/instance.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 
@@ -95,6 +96,9 @@ channel_statistics<Real> masked_statistics(strided_view<Real const, 3> z, stride
     }
     return result;
 }
+
+GENRENDER_INSTANCE(masked_statistics<float>);
+GENRENDER_INSTANCE(masked_statistics<double>);
 
 } // namespace GENRENDER_UNIT
 

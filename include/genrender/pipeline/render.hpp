@@ -5,11 +5,15 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/blending/blend_plan.hpp>
 #include <genrender/core/finite.hpp>
+#include <genrender/core/instance.hpp>
+#include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/maps/cell_extents.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
+#include <genrender/sampling/sampler.hpp>
 
 #include <chrono>
 #include <concepts>
@@ -146,7 +150,23 @@ correspondence_set<Map> compile_maps(Phi const& phi, Method const& method, rende
     return maps;
 }
 
+/// Samples from z by an erased D: samplers are compiled once for all networks, maps and methods.
+template <class Real>
+void sample_latents(sampler_kind sampler,
+                    std::function<latents<Real>(latents<Real> const&, Real, std::size_t)> const& D,
+                    latents<Real> const& z, std::vector<Real> const& sigmas,
+                    std::function<void(std::size_t, latents<Real>&)> const& after_step) {
+    sample(sampler, D, z, sigmas, after_step);
+}
+
+GENRENDER_INSTANCE(sample_latents<float>);
+GENRENDER_INSTANCE(sample_latents<double>);
+
 } // namespace detail
+
+GENRENDER_INSTANCE(make_blend_plan<float, chosen_correspondence<2>>);
+GENRENDER_INSTANCE(make_blend_plan<float, chosen_correspondence<3>>);
+GENRENDER_INSTANCE(make_blend_plan<double, chosen_correspondence<2>>);
 
 /// Renders an animation by a method with a denoiser: [GR alg. 1] unless another method is named. UV maps [frames,
 /// height, width] are of full resolution, a whole multiple of the denoiser's latent grid and feature grids; the denoiser
@@ -211,14 +231,12 @@ render(Phi const& phi, Maps const& UV,
         progress_meter meter(settings.steps, total, arguments.observer);
         sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
                                   report, method);
-        // Samplers are compiled once for all networks, maps and methods.
-        std::function<latents<Real>(latents<Real> const&, Real, std::size_t)> const denoise = std::cref(D);
-        std::function<void(std::size_t, latents<Real>&)> const after_step = [&](std::size_t step, latents<Real>& z) {
-            D.after_step(step, z);
-            result.z = z;
-        };
         try {
-            sample(settings.sampler, denoise, latents<Real>(result.z), sigmas, after_step);
+            detail::sample_latents<Real>(settings.sampler, std::cref(D), result.z, sigmas,
+                                         [&](std::size_t step, latents<Real>& z) {
+                                             D.after_step(step, z);
+                                             result.z = z;
+                                         });
         } catch (cancelled const&) {
             result.is_cancelled = true;
         }

@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/instance.hpp>
 #include <genrender/core/vectors.hpp>
 
 #include <algorithm>
@@ -38,12 +39,18 @@ void silu(std::span<Real> values) {
     GENRENDER_KERNEL(internal, silu<Real>)(values.data(), values.size());
 }
 
+GENRENDER_INSTANCE(silu<float>);
+GENRENDER_INSTANCE(silu<double>);
+
 /// Replaces every a by a b Phi(b), b being the element of `gates` in its place, with Phi the distribution function of
 /// N(0, 1): gated by the GELU in its exact form (Hendrycks and Gimpel 2016). Both have the same size.
 template <class Real>
 void gate_by_gelu(std::span<Real> values, std::type_identity_t<std::span<Real const>> gates) {
     GENRENDER_KERNEL(internal, gate_by_gelu<Real>)(values.data(), gates.data(), values.size());
 }
+
+GENRENDER_INSTANCE(gate_by_gelu<float>);
+GENRENDER_INSTANCE(gate_by_gelu<double>);
 
 /// x Phi(x).
 template <class Real>

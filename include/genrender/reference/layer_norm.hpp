@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/instance.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
 #include <genrender/reference/weights.hpp>
@@ -33,12 +34,7 @@ public:
 
     /// Writes the result [tokens, channels]; rows of both are contiguous, `out` may be `in`. Throws shape_error if they
     /// do not fit.
-    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in) const {
-        auto const channels = channels_;
-        require_shape("layer_norm", "in", in, {in.extent(0), channels});
-        require_shape("layer_norm", "out", out, in.extents());
-        GENRENDER_KERNEL(internal, normalize_tokens<Real>)(out, in, weight_.data(), bias_.data(), epsilon_);
-    }
+    void operator()(strided_view<Real, 2> out, in_view<Real, 2> in) const;
 
 private:
     std::size_t channels_;
@@ -46,6 +42,17 @@ private:
     std::vector<Real> weight_;
     std::vector<Real> bias_;
 };
+
+template <class Real>
+void layer_norm<Real>::operator()(strided_view<Real, 2> out, in_view<Real, 2> in) const {
+    auto const channels = channels_;
+    require_shape("layer_norm", "in", in, {in.extent(0), channels});
+    require_shape("layer_norm", "out", out, in.extents());
+    GENRENDER_KERNEL(internal, normalize_tokens<Real>)(out, in, weight_.data(), bias_.data(), epsilon_);
+}
+
+GENRENDER_CLASS_INSTANCE(layer_norm<float>);
+GENRENDER_CLASS_INSTANCE(layer_norm<double>);
 
 } // namespace genrender::reference
 

@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/instance.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -101,25 +102,7 @@ public:
     /// Writes the product with the inputs of each token, and what is added to it, into `out` [tokens, outputs], whose
     /// rows are contiguous. Tokens are shared out over `loop`.
     void multiply(strided_view<Real, 2> out, token_inputs<Real> const& in, product_terms<Real> const& terms = {},
-                  any_loop const& loop = {}) const {
-        auto const tokens = out.extent(0);
-        // The inputs of a chunk and one panel stay in the second cache while all panels pass over the chunk.
-        constexpr std::size_t cached = std::size_t{1} << 17;
-        auto const numbers = tokens * static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, std::abs(in.token_stride)));
-        auto const chunks = std::max((numbers + cached - 1) / cached, (tokens + 1023) / 1024);
-        auto const rows = layout_.rows;
-        auto const chunk = ((tokens + chunks - 1) / std::max<std::size_t>(chunks, 1) + rows - 1) / rows * rows;
-        auto const columns = 8 * layout_.lanes; // of a thread's share
-        auto const shares = (outputs_ + columns - 1) / columns;
-        auto const multiply_panels = GENRENDER_KERNEL_OF(target_, internal, multiply_panels<Real>);
-        loop(chunks * shares, [&](std::size_t i) {
-            auto const begin = std::min(tokens, i / shares * chunk);
-            auto const end = std::min(tokens, begin + chunk);
-            auto const first = i % shares * columns;
-            multiply_panels({weights_.data(), inputs_, outputs_}, out, in, terms, begin, end, first,
-                            std::min(outputs_, first + columns));
-        });
-    }
+                  any_loop const& loop = {}) const;
 
 private:
     vector_target target_ = vector_target::baseline;
@@ -128,6 +111,31 @@ private:
     std::size_t outputs_ = 0;
     stack<Real, 1> weights_;
 };
+
+template <class Real>
+void weight_panels<Real>::multiply(strided_view<Real, 2> out, token_inputs<Real> const& in,
+                                   product_terms<Real> const& terms, any_loop const& loop) const {
+    auto const tokens = out.extent(0);
+    // The inputs of a chunk and one panel stay in the second cache while all panels pass over the chunk.
+    constexpr std::size_t cached = std::size_t{1} << 17;
+    auto const numbers = tokens * static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, std::abs(in.token_stride)));
+    auto const chunks = std::max((numbers + cached - 1) / cached, (tokens + 1023) / 1024);
+    auto const rows = layout_.rows;
+    auto const chunk = ((tokens + chunks - 1) / std::max<std::size_t>(chunks, 1) + rows - 1) / rows * rows;
+    auto const columns = 8 * layout_.lanes; // of a thread's share
+    auto const shares = (outputs_ + columns - 1) / columns;
+    auto const multiply_panels = GENRENDER_KERNEL_OF(target_, internal, multiply_panels<Real>);
+    loop(chunks * shares, [&](std::size_t i) {
+        auto const begin = std::min(tokens, i / shares * chunk);
+        auto const end = std::min(tokens, begin + chunk);
+        auto const first = i % shares * columns;
+        multiply_panels({weights_.data(), inputs_, outputs_}, out, in, terms, begin, end, first,
+                        std::min(outputs_, first + columns));
+    });
+}
+
+GENRENDER_CLASS_INSTANCE(weight_panels<float>);
+GENRENDER_CLASS_INSTANCE(weight_panels<double>);
 
 } // namespace genrender::reference
 

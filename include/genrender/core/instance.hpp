@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// Instances of templates that a program compiles once, apart from what calls them.
+#pragma once
+
+#include <genrender/core/begin_header.inl>
+
+// Where GENRENDER_COMPILED is defined, for all of a program's units alike, GENRENDER_INSTANCE says that a function template's
+// instance, such as `scaled_dot_product<float>`, is compiled elsewhere, and GENRENDER_CLASS_INSTANCE that the members of a class
+// are; one unit includes <genrender/compiled.hpp> and has them. Where it is not defined, templates are compiled where they are
+// called, as templates are. Functions that are written in a class are inline: only others leave the unit that calls them.
+#if defined(GENRENDER_HAS_INSTANCES)
+#define GENRENDER_INSTANCE(...) template decltype(__VA_ARGS__) __VA_ARGS__
+#define GENRENDER_CLASS_INSTANCE(...) template class __VA_ARGS__
+#elif defined(GENRENDER_COMPILED)
+#define GENRENDER_INSTANCE(...) extern template decltype(__VA_ARGS__) __VA_ARGS__
+#define GENRENDER_CLASS_INSTANCE(...) extern template class __VA_ARGS__
+#else
+#define GENRENDER_INSTANCE(...) static_assert(true)
+#define GENRENDER_CLASS_INSTANCE(...) static_assert(true)
+#endif
+
+#include <genrender/core/end_header.inl>
