@@ -31,7 +31,6 @@ genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nl
 set(genrender_components "")
 genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     genrender.hpp
-    compiled.hpp
     version.hpp
     core/begin_header.inl
     core/each_target.inl

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What this project's programs of many units compile once (genrender/compiled.hpp).
-#include <genrender/compiled.hpp>
+// The library's instances, which this project's larger programs compile once.
+#define GENRENDER_INSTANCES_HERE
+#include <genrender/genrender.hpp>
 #include <genrender/reference.hpp>

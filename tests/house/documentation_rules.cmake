@@ -57,7 +57,7 @@ endforeach()
 
 set(regions "")
 file(GLOB sources RELATIVE ${ROOT} ${ROOT}/examples/*.cpp ${ROOT}/examples/support/*.hpp)
-file(GLOB_RECURSE tests RELATIVE ${ROOT} ${ROOT}/tests/*.test.cpp)
+file(GLOB_RECURSE tests RELATIVE ${ROOT} ${ROOT}/tests/*.test.cpp ${ROOT}/tests/package/toy/*.cpp)
 foreach(source IN LISTS sources tests)
     file(READ ${ROOT}/${source} text)
     while(text MATCHES "( *)// docs:begin ([a-z_]+)\n")

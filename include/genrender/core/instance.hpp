@@ -4,11 +4,12 @@
 
 #include <genrender/core/begin_header.inl>
 
-// Where GENRENDER_COMPILED is defined, for all of a program's units alike, GENRENDER_INSTANCE says that a function template's
-// instance, such as `scaled_dot_product<float>`, is compiled elsewhere, and GENRENDER_CLASS_INSTANCE that the members of a class
-// are; one unit includes <genrender/compiled.hpp> and has them. Where it is not defined, templates are compiled where they are
-// called, as templates are. Functions that are written in a class are inline: only others leave the unit that calls them.
-#if defined(GENRENDER_HAS_INSTANCES)
+// Where all units of a program define GENRENDER_COMPILED, GENRENDER_INSTANCE says that the instance of a function template, such
+// as `scaled_dot_product<float>`, is compiled elsewhere, and GENRENDER_CLASS_INSTANCE that the members of a class are; one unit,
+// which includes whole components, defines GENRENDER_INSTANCES_HERE instead and has them. Where neither is defined, templates are
+// compiled where they are called, as templates are. Functions whose body stands in a class are inline: only others leave the
+// unit that calls them.
+#if defined(GENRENDER_INSTANCES_HERE)
 #define GENRENDER_INSTANCE(...) template decltype(__VA_ARGS__) __VA_ARGS__
 #define GENRENDER_CLASS_INSTANCE(...) template class __VA_ARGS__
 #elif defined(GENRENDER_COMPILED)
