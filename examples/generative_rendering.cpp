@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // [GR alg. 1] The program that does it all: an animated scene in, a stylised animation out.
+#include "support/diffusion_model.hpp"
 #include "support/guidance_source.hpp"
 #include "support/plan_output.hpp"
 #include "support/preflight_output.hpp"
@@ -11,8 +12,6 @@
 
 #include <genrender/baselines/pix2video.hpp>
 #include <genrender/baselines/tokenflow.hpp>
-#include <genrender/reference/reference_network.hpp>
-#include <genrender/reference/reference_weights.hpp>
 #include <genrender/pipeline/render.hpp>
 
 #include <algorithm>
@@ -28,17 +27,6 @@ using namespace genrender::reference;
 using namespace genrender::examples;
 
 namespace {
-
-using network = reference_network<float>;
-
-/// The user's denoiser; here the reference network with the weights of a folder, or with random ones.
-reference_weights<float> load_weights(render_options const& options) {
-    auto weights = options.weights == "random" ? reference_weights<float>::seeded(options.seed)
-                                               : reference_weights<float>::from_folder(options.weights);
-    require_value(weights.config.in_channels == 12, "--weights", "channels of the latents", weights.config.in_channels,
-                  "12, the Haar bands of a colour image: this program has no other decoder");
-    return weights;
-}
 
 /// What `use` makes of the method that the options name.
 template <class Use>
@@ -61,11 +49,10 @@ auto with_canonical_maps(render_options const& options, guidance_source const& s
                : use(to_uv_view(source.guidance.uv));
 }
 
-void run(render_options const& options, guidance_source const& source, reference_weights<float>& weights,
+void run(render_options const& options, guidance_source const& source, diffusion_model& model,
          std::optional<earlier_run> const& earlier, threaded_loop const& loop, stopwatch const& total) {
     // The denoiser is told the prompt and the depth of the whole animation.
-    auto const nearness = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
-    network const phi(weights, weights.conditioning(to_view(nearness), options.prompt), loop);
+    auto const phi = model.network(source.guidance, source.image, loop);
 
     render_result<float> result;
     auto const grown = resident_growth([&] {
@@ -80,7 +67,7 @@ void run(render_options const& options, guidance_source const& source, reference
         });
     });
 
-    auto const images = decoded(result.z);
+    auto const images = model.pictures(result.z, loop);
     std::vector<rgb8_image> frames;
     for (std::size_t i = 0; i < images.shape()[0]; ++i) {
         frames.push_back(rgb_picture(to_view(images)[i]));
@@ -95,17 +82,10 @@ void run(render_options const& options, guidance_source const& source, reference
     }
 }
 
-/// The network for questions that any word will do for.
-network silent_network(guidance_source const& source, reference_weights<float>& weights, threaded_loop const& loop) {
-    auto const nearness = cell_means(sequence_inverse_depth(source.guidance.depth), source.image);
-    auto const word = weights.vocabulary ? weights.vocabulary->words().front() : std::string{};
-    return {weights, weights.conditioning(to_view(nearness), word), loop};
-}
-
 /// Tells what a run will take. The exit code.
-int plan(render_options const& options, guidance_source const& source, reference_weights<float>& weights,
+int plan(render_options const& options, guidance_source const& source, diffusion_model& model,
          threaded_loop const& loop) {
-    auto const phi = silent_network(source, weights, loop);
+    auto const phi = model.network(source.guidance, source.image, loop);
     auto const timed = with_canonical_maps(
         options, source, [&](auto const& maps) { return plan_run(phi, maps, options.settings, loop.threads()); });
     write_plan(options.out, timed);
@@ -133,9 +113,9 @@ std::string advice(recommendation const& one) {
 }
 
 /// Tells what the maps are good for, at the feature resolutions of the network's injected layers. The exit code.
-int check(render_options const& options, guidance_source const& source, reference_weights<float>& weights,
+int check(render_options const& options, guidance_source const& source, diffusion_model& model,
           threaded_loop const& loop) {
-    auto const phi = silent_network(source, weights, loop); // asked for its layers only
+    auto const phi = model.network(source.guidance, source.image, loop); // asked for its layers only
     std::vector<grid_extents> grids;
     for (auto const& site : phi.sites()) {
         if (options.settings.layers(site, 0) && std::find(grids.begin(), grids.end(), site.grid) == grids.end()) {
@@ -147,6 +127,13 @@ int check(render_options const& options, guidance_source const& source, referenc
     });
     std::cout << text_of(report, advice) << "picture: " << (options.out / "preflight.png").string() << "\n";
     return report.allows_run() ? 0 : 1;
+}
+
+/// Throws value_error unless the network can halve its latents as often as it does.
+void require_pixels(grid_extents image, std::size_t factor) {
+    auto const expected = "a multiple of " + std::to_string(factor) + " for this model";
+    require_value(image.height % factor == 0, "--size", "height", image.height, expected.c_str());
+    require_value(image.width % factor == 0, "--width", "width", image.width, expected.c_str());
 }
 
 /// Prints a sentence and gives the exit code.
@@ -162,32 +149,35 @@ int main(int argc, char** argv) {
     render_options options;
     guidance_source source;
     std::optional<earlier_run> earlier;
-    std::optional<reference_weights<float>> weights;
+    std::optional<diffusion_model> model;
     threaded_loop loop;
     // Everything that can be wrong with the arguments shows before the first step.
     try {
         options = parse_render_options(argc, argv);
         loop = threaded_loop(options.threads);
         force_vector_target(options.vectors);
-        weights = load_weights(options);
-        if (weights->vocabulary && !options.is_check && !options.is_plan) {
-            prompt_rows(options.prompt, weights->vocabulary->words());
-        }
+        model.emplace(options);
+        auto const notes = model->notes();
+        auto const levels = model->schedule();
+        options.settings.sigma_min = static_cast<float>(levels.sigma_min());
+        options.settings.sigma_max = static_cast<float>(levels.sigma_max());
+        options.size = options.size > 0 ? options.size : model->usual_size();
         make_folder(options.out);
-        source = load_guidance(options, loop);
+        source = load_guidance(options, model->scale(), loop);
+        source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
         auto const frame_count = source.guidance.uv.frame_count();
         options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
         options.settings.noise.rays = source.rays;
-        require_latent_grid(weights->config, {source.image.height / 2, source.image.width / 2});
+        require_pixels(source.image, model->scale() * model->config().grid_divisor());
         if (options.is_check) {
-            return check(options, source, *weights, loop);
+            return check(options, source, *model, loop);
         }
         require_render_settings(options.settings, frame_count);
         with_method(options.method, [&](auto const& method) { // which knows whether it draws keyframes
             return frames_to_denoise(options.settings, frame_count, method);
         });
         if (options.is_plan) {
-            return plan(options, source, *weights, loop);
+            return plan(options, source, *model, loop);
         }
         if (!options.beside.empty()) {
             earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
@@ -203,7 +193,7 @@ int main(int argc, char** argv) {
         std::cerr << "note: " << note << "\n";
     }
     try {
-        run(options, source, *weights, earlier, loop, total);
+        run(options, source, *model, earlier, loop, total);
     } catch (std::exception const& error) {
         return fail(1, error);
     }

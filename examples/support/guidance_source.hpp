@@ -39,8 +39,9 @@ struct guidance_source {
 
 namespace detail {
 
-/// Map pixels along one pixel of a rendered frame: correspondences are found between the pixels of the frame.
-inline constexpr std::size_t map_pixels = 4;
+/// Map pixels along one pixel of a rendered frame, for a model whose tokens have so many along a side: eight a token, and
+/// one a pixel at least, since errors are measured between the pixels of frames.
+inline std::size_t map_pixels(std::size_t scale) { return std::max<std::size_t>(1, 8 / scale); }
 
 /// The first `count` frames of a stack.
 template <class Tensor>
@@ -90,13 +91,14 @@ inline void add_notes_on(std::vector<std::string>& notes, uv_report const& repor
 
 } // namespace detail
 
-/// The guidance that the options ask for. Throws file_error for files that cannot be used, value_error for options that
+/// The guidance that the options ask for, for a model whose tokens have `scale` pixels along a side. Throws file_error for files that cannot be used, value_error for options that
 /// do not fit what is read.
-inline guidance_source load_guidance(render_options const& options, any_loop const& loop) {
+inline guidance_source load_guidance(render_options const& options, std::size_t scale, any_loop const& loop) {
     guidance_source source;
     auto const frames = options.frames.value_or(24);
-    source.image = {options.size, options.size};
-    grid_extents const map{detail::map_pixels * options.size, detail::map_pixels * options.size};
+    source.image = {options.size, options.width.value_or(options.size)};
+    auto const map_pixels = detail::map_pixels(scale);
+    grid_extents const map{map_pixels * source.image.height, map_pixels * source.image.width};
     auto const positions = options.correspondence.coordinates() == canonical_coordinates::position ? position_pass::on
                                                                                                    : position_pass::off;
     // Maps of 18 bytes a pixel, 30 with rest positions; a machine that has not as much would be brought down by its own
@@ -137,6 +139,8 @@ inline guidance_source load_guidance(render_options const& options, any_loop con
             source.guidance.position = detail::first_frames(sequence.position, count);
         }
         source.image = detail::image_extents(uv.grid(), options.size);
+        require_value(options.width.value_or(source.image.width) == source.image.width, "--width", "width",
+                      *options.width, (std::to_string(source.image.width) + ", as the maps have it").c_str());
     }
     detail::add_notes_on(source.notes, inspect(to_uv_view(source.guidance.uv)));
     // Texels have nowhere else to go; a footprint tells the tiles of a repeated texture apart.

@@ -35,6 +35,8 @@ inline constexpr named<noise_kind> noise_names[]{
     {"uv", noise_kind::uv}, {"fixed", noise_kind::fixed}, {"independent", noise_kind::independent}};
 inline constexpr named<feature_storage> storage_names[]{
     {"same", feature_storage::same}, {"float16", feature_storage::f16}, {"bfloat16", feature_storage::bf16}};
+inline constexpr named<prediction> prediction_type_names[]{{"epsilon", prediction::epsilon},
+                                                           {"v_prediction", prediction::velocity}};
 
 /// The name of a value. Throws value_error if it has none.
 template <class Enum, std::size_t count>

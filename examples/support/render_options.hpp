@@ -8,18 +8,22 @@
 
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/vector_target.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
 #include <genrender/pipeline/render_settings.hpp>
+#include <genrender/sampling/preconditioning.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -27,18 +31,34 @@ namespace genrender::examples {
 
 using namespace genrender::reference;
 
+/// What the pictures shall show, and how strictly.
+struct prompt_options {
+    std::string text;
+    std::string negative;
+    std::optional<double> guidance_scale; ///< none: the model's usual
+    double guidance_rescale = 0;
+    double conditioning_scale = 1;
+    std::size_t clip_skip = 0;
+};
+
 /// Everything a run is told. One of `scene`, `model` and `maps` is not empty.
 struct render_options {
     std::string scene;
     std::filesystem::path model;
     std::filesystem::path maps;
-    std::string prompt;
+    prompt_options prompt;
     std::filesystem::path out;
-    std::filesystem::path beside;                                  ///< an earlier run to compare with
-    std::string weights = GENRENDER_REFERENCE_DENOISER "/weights"; ///< a folder, or `random`
+    std::filesystem::path beside;                                             ///< an earlier run to compare with
+    std::filesystem::path pipeline = GENRENDER_REFERENCE_DENOISER "/weights"; ///< a folder, a file, or `random`
+    std::filesystem::path controlnet;                                         ///< empty: in the pipeline
+    std::filesystem::path tokenizer;                                          ///< empty: in the pipeline
+    std::string variant;                                                      ///< of the files of weights
+    std::optional<prediction> prediction_type;                                ///< of a single file
+    std::vector<std::pair<std::filesystem::path, double>> loras;              ///< files and scales
     std::optional<std::size_t> frames;
     std::optional<std::size_t> keyframes;
-    std::size_t size = 64;
+    std::size_t size = 0;             ///< height of a frame; 0: the model's usual
+    std::optional<std::size_t> width; ///< none: follows the input
     std::size_t threads = 0;
     std::optional<vector_target> vectors; ///< none: the processor's
     std::uint64_t seed = 0;
@@ -63,6 +83,25 @@ inline std::string listed(auto const& names, char const* separator) {
         text += (text.empty() ? "" : separator) + std::string(name);
     }
     return text;
+}
+
+} // namespace detail
+
+namespace detail {
+
+/// `FILE:SCALE` or `FILE`, whose scale is 1. Throws CLI::ValidationError for a scale that is no number.
+inline std::pair<std::filesystem::path, double> lora_of(std::string const& text) {
+    auto const colon = text.rfind(':');
+    if (colon == std::string::npos || colon + 1 == text.size()) {
+        return {text.substr(0, colon), 1.0};
+    }
+    double scale = 0;
+    auto const* const end = text.data() + text.size();
+    auto const [rest, error] = std::from_chars(text.data() + colon + 1, end, scale);
+    if (error != std::errc() || rest != end || !is_finite(scale)) {
+        throw CLI::ValidationError("--lora", "scale is '" + text.substr(colon + 1) + "', expected a number, as in FILE:0.8");
+    }
+    return {text.substr(0, colon), scale};
 }
 
 } // namespace detail
@@ -98,9 +137,19 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->type_name("DIR");
     input->require_option(1);
     auto const* const prompt_option =
-        app.add_option("--prompt", options.prompt,
-                       "what it shall look like, in the words: " + detail::listed(prompt_words, " ") +
-                           " (not needed with --check\nor --plan)");
+        app.add_option("--prompt", options.prompt.text,
+                       "what it shall look like; the reference denoiser knows the words " +
+                           detail::listed(prompt_words, " ") + "\n(not needed with --check or --plan)");
+    app.add_option("--negative-prompt", options.prompt.negative, "what it shall not look like")->type_name("TEXT");
+    app.add_option("--guidance", options.prompt.guidance_scale,
+                   "scale of classifier-free guidance, 1 for none (7.5; 2 with the reference denoiser)")
+        ->check(CLI::Range(0.0, 100.0).description(""))
+        ->type_name("G");
+    app.add_option("--guidance-rescale", options.prompt.guidance_rescale,
+                   "share of what a large guidance adds to contrast that is taken back, 0 to 1")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1.0).description(""))
+        ->type_name("SHARE");
     app.add_option("--out", options.out, "folder for frames, maps, animation, contact sheet and report")
         ->required()
         ->check(not_empty)
@@ -115,11 +164,12 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         app.add_option("--frames", frames, "number of frames (24; with --maps: at most this many)")
             ->check(positive)
             ->type_name("N");
-    app.add_option("--size", options.size,
-                   "height of the frames in pixels, a multiple of 8; the width follows the input")
-        ->capture_default_str()
+    app.add_option("--size,--height", options.size,
+                   "height of the frames in pixels, a multiple of 8 and of 64 with Stable Diffusion (what the model was\n"
+                   "trained for: 64, 512); the width follows the input: the same, with --maps as they have it")
         ->check(positive)
         ->type_name("PX");
+    app.add_option("--width", options.width, "width of the frames in pixels")->check(positive)->type_name("PX");
     settings.steps = 20;
     app.add_option("--steps", settings.steps, "denoising steps")
         ->capture_default_str()
@@ -185,11 +235,45 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     app.add_flag("--plan", options.is_plan,
                  "say before you run: memory and work of the run, as a table, plan.txt and plan.json in OUT")
         ->excludes("--check");
-    app.add_option("--weights", options.weights,
-                   "the denoiser, a folder in diffusers' layout (the trained reference denoiser), or the word\n"
-                   "random: the same network without training")
+    auto* const of_pipeline = app.add_option_group("Model", "Stable Diffusion 1.x or 2.x with a ControlNet for depth");
+    of_pipeline
+        ->add_option("--pipeline", options.pipeline,
+                     "a folder in diffusers' layout or a checkpoint in one file (the trained reference denoiser), or the\n"
+                     "word random: the reference denoiser without training")
+        ->check(not_empty)
+        ->type_name("DIR|FILE");
+    of_pipeline
+        ->add_option("--controlnet", options.controlnet, "its ControlNet, a folder or a file (the one in the pipeline)")
+        ->check(not_empty)
+        ->type_name("DIR|FILE");
+    of_pipeline->add_option("--conditioning", options.prompt.conditioning_scale, "factor of what the ControlNet adds")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 10.0).description(""))
+        ->type_name("SCALE");
+    std::vector<std::string> loras;
+    of_pipeline->add_option("--lora", loras, "a LoRA to merge into the weights, as often as there are (scale 1)")
+        ->check(not_empty)
+        ->allow_extra_args(false)
+        ->type_name("FILE[:SCALE]");
+    of_pipeline
+        ->add_option("--tokenizer", options.tokenizer,
+                     "folder with vocab.json and merges.txt (the one in the pipeline; a file has none)")
         ->check(not_empty)
         ->type_name("DIR");
+    of_pipeline
+        ->add_option("--variant", options.variant, "of the weights in a folder, such as fp16 (the whole ones, else fp16)")
+        ->check(not_empty)
+        ->type_name("NAME");
+    std::string prediction_type;
+    of_pipeline
+        ->add_option("--prediction-type", prediction_type,
+                     "epsilon or v_prediction: what a file of Stable Diffusion 2.x was trained for, which it does not say")
+        ->check(one_of(all_names(prediction_type_names)))
+        ->type_name("NAME");
+    of_pipeline->add_option("--clip-skip", options.prompt.clip_skip, "last layers of the text encoder to leave out")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 64).description(""))
+        ->type_name("N");
     app.add_option("--threads", options.threads, "0: as many as the machine has")
         ->check(CLI::Range(0, 1024).description(""))
         ->capture_default_str()
@@ -225,11 +309,20 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         if (prompt_option->count() == 0 && !options.is_check && !options.is_plan) {
             throw CLI::RequiredError("--prompt");
         }
+        for (auto const& lora : loras) {
+            options.loras.push_back(detail::lora_of(lora));
+        }
+        if (options.pipeline == "random" && of_pipeline->count_all() > 1) {
+            throw CLI::ValidationError("--pipeline", "random has no files for the other options of the model");
+        }
         options.correspondence.apply_to(settings);
     } catch (CLI::ParseError const& error) {
         throw no_run{app.exit(error) == 0 ? 0 : 2};
     }
 
+    if (!prediction_type.empty()) {
+        options.prediction_type = value_in(prediction_type_names, prediction_type);
+    }
     if (frames_option->count() > 0) {
         options.frames = frames;
     }

@@ -85,8 +85,10 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["input"] = !options.scene.empty()   ? options.scene
                     : !options.model.empty() ? options.model.string()
                                              : options.maps.string();
-    told["prompt"] = options.prompt;
-    told["weights"] = options.weights;
+    told["prompt"] = options.prompt.text;
+    told["negative_prompt"] = options.prompt.negative;
+    told["guidance"] = options.prompt.guidance_scale ? nlohmann::ordered_json(*options.prompt.guidance_scale) : nullptr;
+    told["pipeline"] = options.pipeline.string();
     told["frames"] = images.shape()[0];
     told["size"] = {source.image.height, source.image.width};
     told["map_size"] = {source.guidance.uv.grid().height, source.guidance.uv.grid().width};

@@ -95,4 +95,33 @@ TEST_SUITE("sampling/classifier_free_guidance") {
         CHECK_THROWS_WITH_AS(guide(out.view(), out, out, std::numeric_limits<double>::quiet_NaN()),
                              "guide: scale is nan, expected a finite number", value_error);
     }
+
+    TEST_CASE_TEMPLATE("rescaled guidance has the conditional deviation at share 1 and half the way at a half", Real,
+                       float, double) {
+        stack<Real, 4> F({2, 1, 1, 4});
+        stack<Real, 4> F_cond({2, 1, 1, 4});
+        for (std::size_t e = 0; e < 4; ++e) {
+            F(0, 0, 0, e) = Real(10) * static_cast<Real>(e); // deviation 12.909...
+            F(1, 0, 0, e) = 7;                               // none
+            F_cond(0, 0, 0, e) = static_cast<Real>(3 + e);   // a tenth of the first
+            F_cond(1, 0, 0, e) = static_cast<Real>(e);
+        }
+        auto whole = F;
+        rescale_guidance(whole.view(), F_cond, Real(1));
+        auto half = F;
+        rescale_guidance(half.view(), F_cond, Real(0.5));
+        auto none = F;
+        rescale_guidance(none.view(), F_cond, Real(0));
+        for (std::size_t e = 0; e < 4; ++e) {
+            CHECK(whole(0, 0, 0, e) == doctest::Approx(static_cast<double>(e)));
+            CHECK(half(0, 0, 0, e) == doctest::Approx(5.5 * static_cast<double>(e)));
+            CHECK(none(0, 0, 0, e) == F(0, 0, 0, e));
+            CHECK(whole(1, 0, 0, e) == 7); // A frame without deviation stays.
+        }
+        CHECK_THROWS_WITH_AS(rescale_guidance(F.view(), F_cond, Real(1.5)),
+                             "rescale_guidance: share is 1.500000, expected a number in [0, 1]", value_error);
+        stack<Real, 4> other({2, 1, 1, 3});
+        CHECK_THROWS_WITH_AS(rescale_guidance(F.view(), other, Real(1)),
+                             "rescale_guidance: F_cond is [2, 1, 1, 3], expected [2, 1, 1, 4]", shape_error);
+    }
 }

@@ -24,6 +24,7 @@ struct network_conditioning {
     stack<Real, 2> empty_prompt; ///< or the negative one [tokens, cross_attention_dim]; unused with guidance_scale 1
     Real guidance_scale = 2;     ///< of classifier-free guidance; 1 runs the prompt alone
     Real conditioning_scale = 1; ///< factor of what the ControlNet adds; 0 is as if it were not there
+    Real guidance_rescale = 0;   ///< share of rescale_guidance, in [0, 1]
 };
 
 /// The hint of a depth-conditioned ControlNet at image resolution [frames, channels, height, width]: inverse depth

@@ -133,6 +133,7 @@ public:
         if (branches() == 2) {
             auto F_cond = run(1);
             guide(F.channels_first(), F.channels_first(), F_cond.channels_first(), conditioning_.guidance_scale);
+            rescale_guidance(F.channels_first(), F_cond.channels_first(), conditioning_.guidance_rescale);
         }
         to_clean(x0, config_.prediction_type, z, F.channels_first(), sigma);
     }
@@ -183,6 +184,8 @@ private:
         require_latent_grid(config_, latent_grid_);
         require_value(is_finite(conditioning_.guidance_scale), function, "guidance_scale", conditioning_.guidance_scale,
                       "a finite number");
+        require_value(conditioning_.guidance_rescale >= 0 && conditioning_.guidance_rescale <= 1, function,
+                      "guidance_rescale", conditioning_.guidance_rescale, "a number in [0, 1]");
         require_prompt("prompt", conditioning_.prompt);
         if (branches() == 2) {
             require_prompt("empty_prompt", conditioning_.empty_prompt);
