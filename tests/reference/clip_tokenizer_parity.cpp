@@ -72,7 +72,8 @@ int main(int argc, char** argv) {
         } else if (argc == 4) {
             tokenize(argv[1], argv[2], argv[3]);
         } else {
-            std::cerr << "usage: clip_tokenizer_parity --assigned | FOLDER PROMPTS IDS (see clip_tokenizer_parity.py)\n";
+            std::cerr
+                << "usage: clip_tokenizer_parity --assigned | FOLDER PROMPTS IDS (see clip_tokenizer_parity.py)\n";
             return 2;
         }
         return 0;

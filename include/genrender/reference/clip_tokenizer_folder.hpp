@@ -130,11 +130,11 @@ inline clip_tokenizer load_clip_tokenizer(std::filesystem::path const& folder) {
             continue;
         }
         std::ifstream file(path, std::ios::binary);
-        std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-        if (!file.is_open() || file.bad()) {
+        // A folder opens too, but has no first byte.
+        if (!file.is_open() || (file.peek() == std::ifstream::traits_type::eof() && file.bad())) {
             throw file_error(path.string() + ": file cannot be read, expected a readable file");
         }
-        files.texts.emplace(name, std::move(text));
+        files.texts[name] = {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     }
     return make_clip_tokenizer(files);
 }
