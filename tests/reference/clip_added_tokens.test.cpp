@@ -70,7 +70,7 @@ TEST_SUITE("reference/clip_added_tokens") {
 
     TEST_CASE("a name that cannot be is refused") {
         CHECK_THROWS_WITH_AS(clip_added_tokens(three_tokens(), {{"", false}}),
-                             "clip_added_tokens: name is empty, expected a text", value_error);
+                             "clip_added_tokens: length of a name is 0, expected 1 to 1000 bytes", value_error);
         CHECK_THROWS_WITH_AS(
             clip_added_tokens(three_tokens(), {{"a\xff", false}}),
             "clip_added_tokens: name is byte 255 at offset 1, which begins no character, expected valid "

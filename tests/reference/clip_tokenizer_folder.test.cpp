@@ -110,6 +110,22 @@ TEST_SUITE("reference/clip_tokenizer_folder") {
         CHECK(tokenizer.size() == 7);
     }
 
+    TEST_CASE("many tokens and long names are read and found in a moment") {
+        auto names = std::string(R"({"additional_special_tokens": [)");
+        auto ids_by_name = std::string("{");
+        for (int i = 0; i < 3'000; ++i) {
+            auto const name = "\"" + std::string(static_cast<std::size_t>(i % 300), 'a') + std::to_string(i) + "\"";
+            names += (i == 0 ? "" : ", ") + name;
+            ids_by_name += (i == 0 ? "" : ", ") + name + ": " + std::to_string(5 + i);
+        }
+        auto const tokenizer =
+            tokenizer_with({{"special_tokens_map.json", names + "]}"}, {"added_tokens.json", ids_by_name + "}"}});
+        CHECK(tokenizer.size() == 3'005);
+        auto const prompt = tokenizer(std::string(50'000, 'a') + "baaa2703");
+        CHECK(prompt.ids.back() == 4);
+        CHECK(prompt.words.back().text == "aaa2703");
+    }
+
     TEST_CASE("an id that is not that of the vocabulary is refused") {
         CHECK_THROWS_WITH_AS(tokenizer_with({{"added_tokens.json", R"({"<cat>": 9})"}}),
                              "f/added_tokens.json: key <cat>: id of the token <cat> is 9, expected 5, its id in the "

@@ -10,10 +10,9 @@
 #include <genrender/reference/clip_words.hpp>
 #include <genrender/reference/unicode_text.hpp>
 
-#include <algorithm>
 #include <cstddef>
-#include <functional>
-#include <map>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -24,7 +23,7 @@ namespace genrender::reference {
 
 /// A token by its name.
 struct clip_added_token {
-    std::string content;     ///< its name, as texts have it; UTF-8, not empty
+    std::string content;     ///< its name, as texts have it; UTF-8, 1 to 1000 bytes
     bool is_cleaned = false; ///< whether it is looked for in the cleaned text instead of the text as it was written
     /// Equal names that are looked for in the same way.
     friend bool operator==(clip_added_token const&, clip_added_token const&) = default;
@@ -32,13 +31,21 @@ struct clip_added_token {
 
 namespace internal {
 
-/// Names that are looked for in texts.
+/// Names that are looked for in texts, as a tree whose branches are characters.
 class name_search {
 public:
     /// Adds a name; one that is there already keeps its id.
-    void add(std::u32string const& name, std::size_t id) {
-        first_.insert(name.front());
-        ids_[name.size()].emplace(name, id);
+    void add(std::u32string_view name, std::size_t id) {
+        std::uint32_t node = 0;
+        for (auto const point : name) {
+            auto const next = static_cast<std::uint32_t>(ids_.size());
+            auto const found = branches_.emplace(branch(node, point), next);
+            if (found.second) {
+                ids_.emplace_back();
+            }
+            node = found.first->second;
+        }
+        ids_[node] = ids_[node].value_or(id);
     }
 
     /// Calls `on_text` with what lies between names, none of it empty, and `on_name` with each name's id and text, in
@@ -49,15 +56,13 @@ public:
         for (std::size_t i = 0; i < text.size();) {
             std::size_t length = 0;
             std::size_t id = 0;
-            if (first_.contains(text[i])) {
-                for (auto const& [size, names] : ids_) {
-                    auto const found = names.find(std::u32string(text.substr(i, size)));
-                    if (found != names.end()) {
-                        length = size;
-                        id = found->second;
-                        break;
-                    }
+            auto node = branches_.find(branch(0, text[i]));
+            for (auto end = i + 1; node != branches_.end(); ++end) {
+                if (auto const& found = ids_[node->second]) {
+                    length = end - i;
+                    id = *found;
                 }
+                node = end < text.size() ? branches_.find(branch(node->second, text[end])) : branches_.end();
             }
             if (length == 0) {
                 ++i;
@@ -76,8 +81,12 @@ public:
     }
 
 private:
-    std::unordered_set<char32_t> first_;
-    std::map<std::size_t, std::unordered_map<std::u32string, std::size_t>, std::greater<>> ids_; ///< by length
+    static std::uint64_t branch(std::uint32_t node, char32_t point) {
+        return (static_cast<std::uint64_t>(node) << 32) | point;
+    }
+
+    std::unordered_map<std::uint64_t, std::uint32_t> branches_; ///< the node behind a node and a character
+    std::vector<std::optional<std::size_t>> ids_ = std::vector<std::optional<std::size_t>>(1); ///< by node, of names
 };
 
 } // namespace internal
@@ -86,11 +95,13 @@ private:
 class clip_added_tokens {
 public:
     /// Looks each token up in the vocabulary; one that is not there gets the next number behind it. Of equal names the
-    /// last one counts. Throws value_error if a name is empty or no UTF-8.
+    /// last one counts. Throws value_error if a name is empty, longer than 1000 bytes or no UTF-8.
     clip_added_tokens(byte_pair_encoding const& vocabulary, std::vector<clip_added_token> const& tokens)
         : size_(vocabulary.size()) {
         for (auto const& token : tokens) {
-            require_value(!token.content.empty(), "clip_added_tokens", "name", "empty", "a text");
+            auto const bytes = token.content.size();
+            require_value(bytes > 0 && bytes <= 1000, "clip_added_tokens", "length of a name", bytes,
+                          "1 to 1000 bytes");
             std::size_t const next = size_;
             auto const known = vocabulary.id_of(token.content);
             auto const added = ids_.emplace(token.content, known.value_or(next));

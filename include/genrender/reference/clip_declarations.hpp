@@ -47,11 +47,6 @@ struct clip_declared_token {
 
     /// Whether it is looked for in the cleaned text: as declared, or else if it is not special.
     bool in_cleaned() const { return is_cleaned.value_or(!is_special); }
-    /// Equal names that were declared alike.
-    friend bool operator==(clip_declared_token const& a, clip_declared_token const& b) {
-        return a.content == b.content && a.is_name == b.is_name && a.is_special == b.is_special &&
-               a.in_cleaned() == b.in_cleaned();
-    }
 };
 
 /// The tokens that files declare, and how long a prompt is.
@@ -145,7 +140,7 @@ inline clip_declarations read_clip_declarations(clip_tokenizer_files const& file
     auto const expect = [&](char const* key, std::initializer_list<nlohmann::json> values, char const* expected) {
         auto const holds =
             !config.contains(key) || std::find(values.begin(), values.end(), config[key]) != values.end();
-        internal::require_key(holds, path, key, holds ? nlohmann::json() : config[key], expected);
+        internal::require_key(holds, path, key, holds ? config : config[key], expected);
     };
     expect("tokenizer_class", {"CLIPTokenizer", "CLIPTokenizerFast", nullptr}, "CLIPTokenizer");
     expect("do_lower_case", {true}, "true");

@@ -18,7 +18,9 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -54,13 +56,17 @@ inline std::vector<clip_added_token> added_tokens(clip_declarations const& decla
     for (auto const& [id, token] : declared.numbered) {
         tokens.push_back(token);
     }
-    auto const add = [&, numbered = tokens](clip_declared_token const& token) {
-        auto const is_it = [&](clip_declared_token const& other) { return other.content == token.content; };
-        if (std::none_of(numbered.begin(), numbered.end(), is_it) &&
-            std::find(tokens.begin(), tokens.end(), token) == tokens.end()) {
+    std::set<std::string> numbered;
+    std::set<std::tuple<std::string, bool, bool, bool>> known;
+    auto const add = [&](clip_declared_token const& token) {
+        auto const is_new = known.emplace(token.content, token.is_name, token.is_special, token.in_cleaned()).second;
+        if (is_new && !numbered.contains(token.content)) {
             tokens.push_back(token);
         }
     };
+    for (auto const& token : tokens) {
+        numbered.insert(token.content);
+    }
     std::vector<std::string> with_purpose;
     for (auto const* purpose : clip_purposes) {
         if (auto const token = token_of_purpose(declared, purpose)) {
