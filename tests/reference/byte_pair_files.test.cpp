@@ -15,7 +15,7 @@ using namespace genrender::reference;
 
 namespace {
 
-std::string const vocabulary = R"({"a": 0, "b": 1, "b</w>": 2, "ab": 3, "ab</w>": 4, "aab</w>": 5, "?": 6})";
+std::string const seven_tokens = R"({"a": 0, "b": 1, "b</w>": 2, "ab": 3, "ab</w>": 4, "aab</w>": 5, "?": 6})";
 
 byte_pair_encoding encoding_of(std::string const& vocabulary_text, std::string const& merges) {
     return encoding_of_vocabulary_and_merges(vocabulary_text, "v.json", merges, "m.txt", "?");
@@ -25,7 +25,7 @@ byte_pair_encoding encoding_of_model(std::string const& model) {
     return encoding_of_tokenizer(nlohmann::json::parse("{\"model\": " + model + "}"), "t.json", "?");
 }
 
-std::vector<std::size_t> encoded(byte_pair_encoding const& encoding, std::string const& word) {
+std::vector<std::size_t> ids_of_word(byte_pair_encoding const& encoding, std::string const& word) {
     std::vector<std::size_t> ids;
     encoding.encode(word, ids);
     return ids;
@@ -39,17 +39,17 @@ TEST_SUITE("reference/byte_pair_files") {
         for (auto const* merges :
              {"#version: 0.2\na b</w>\na ab</w>\na b\n", "a b</w>\na ab</w>\na b", "a b</w>\r\na ab</w>\r\na b\r\n"}) {
             CAPTURE(merges);
-            auto const encoding = encoding_of(vocabulary, merges);
-            CHECK(encoded(encoding, "aab") == ids{5});
-            CHECK(encoded(encoding, "abb") == ids{3, 2});
+            auto const encoding = encoding_of(seven_tokens, merges);
+            CHECK(ids_of_word(encoding, "aab") == ids{5});
+            CHECK(ids_of_word(encoding, "abb") == ids{3, 2});
         }
-        CHECK(encoded(encoding_of(vocabulary, "a b\na b</w>\n"), "aab") == ids{0, 4});
-        CHECK(encoded(encoding_of(vocabulary, ""), "aab") == ids{0, 0, 2});
+        CHECK(ids_of_word(encoding_of(seven_tokens, "a b\na b</w>\n"), "aab") == ids{0, 4});
+        CHECK(ids_of_word(encoding_of(seven_tokens, ""), "aab") == ids{0, 0, 2});
     }
 
     TEST_CASE("a bad line is named") {
         auto const check = [](char const* merges, char const* sentence) {
-            CHECK_THROWS_WITH_AS(encoding_of(vocabulary, merges), sentence, file_error);
+            CHECK_THROWS_WITH_AS(encoding_of(seven_tokens, merges), sentence, file_error);
         };
         check("#version: 0.2\na b\nab\n", "m.txt: line 3 is 'ab', expected two tokens with one space between");
         check("a b\n\na b\n", "m.txt: line 2 is '', expected two tokens with one space between");
@@ -81,10 +81,11 @@ TEST_SUITE("reference/byte_pair_files") {
         auto const encoding =
             encoding_of_model(R"({"type": "BPE", "continuing_subword_prefix": "", "end_of_word_suffix": )"
                               R"("</w>", "merges": ["a b</w>", ["a", "ab</w>"]], "vocab": )" +
-                              vocabulary + "}");
-        CHECK(encoded(encoding, "aab") == std::vector<std::size_t>{5});
-        CHECK(encoded(encoding_of_model(R"({"end_of_word_suffix": "</w>", "merges": [], "vocab": )" + vocabulary + "}"),
-                      "ab") == std::vector<std::size_t>{0, 2});
+                              seven_tokens + "}");
+        CHECK(ids_of_word(encoding, "aab") == std::vector<std::size_t>{5});
+        CHECK(ids_of_word(
+                  encoding_of_model(R"({"end_of_word_suffix": "</w>", "merges": [], "vocab": )" + seven_tokens + "}"),
+                  "ab") == std::vector<std::size_t>{0, 2});
     }
 
     TEST_CASE("a tokenizer.json of another kind is refused with the key") {
@@ -92,7 +93,7 @@ TEST_SUITE("reference/byte_pair_files") {
             CHECK_THROWS_WITH_AS(encoding_of_model(model), sentence, file_error);
         };
         auto const with = [](std::string const& merges) {
-            return R"({"end_of_word_suffix": "</w>", "vocab": )" + vocabulary + R"(, "merges": )" + merges + "}";
+            return R"({"end_of_word_suffix": "</w>", "vocab": )" + seven_tokens + R"(, "merges": )" + merges + "}";
         };
         check("null", "t.json: key model is null, expected an object");
         check(R"({"type": "Unigram"})", "t.json: key model.type is \"Unigram\", expected \"BPE\", as CLIP's is");

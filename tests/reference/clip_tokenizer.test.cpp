@@ -41,7 +41,7 @@ clip_tokenizer small_tokenizer(std::size_t context_length = 6) {
     return clip_tokenizer(std::move(encoding), special);
 }
 
-using ids = std::vector<std::size_t>;
+using id_list = std::vector<std::size_t>;
 
 } // namespace
 
@@ -49,20 +49,20 @@ TEST_SUITE("reference/clip_tokenizer") {
     TEST_CASE("a prompt is the start, its tokens, the end and padding") {
         auto const tokenizer = small_tokenizer();
         auto const prompt = tokenizer("Cat a");
-        CHECK(prompt.ids == ids{7, 5, 3, 8, 9, 9});
+        CHECK(prompt.ids == id_list{7, 5, 3, 8, 9, 9});
         CHECK(prompt.tokens == 2);
         CHECK(prompt.cut == 0);
         CHECK(prompt.cut_text().empty());
         REQUIRE(prompt.words.size() == 2);
         CHECK(prompt.words[0].text == "cat");
         CHECK(prompt.words[0].tokens == 1);
-        CHECK(tokenizer("").ids == ids{7, 8, 9, 9, 9, 9});
-        CHECK(tokenizer(" \n ").ids == ids{7, 8, 9, 9, 9, 9});
+        CHECK(tokenizer("").ids == id_list{7, 8, 9, 9, 9, 9});
+        CHECK(tokenizer(" \n ").ids == id_list{7, 8, 9, 9, 9, 9});
     }
 
     TEST_CASE("a prompt that is too long is cut, and what is cut is told") {
         auto const prompt = small_tokenizer()("a cat caca! cat");
-        CHECK(prompt.ids == ids{7, 3, 5, 4, 0, 8});
+        CHECK(prompt.ids == id_list{7, 3, 5, 4, 0, 8});
         CHECK(prompt.tokens == 4);
         CHECK(prompt.cut == 3);
         CHECK(prompt.cut_text() == "caca ! cat");
@@ -71,15 +71,15 @@ TEST_SUITE("reference/clip_tokenizer") {
         CHECK(prompt.words[2].kept == 2);
         CHECK(prompt.words[3].kept == 0);
         // As long as there is room for.
-        CHECK(small_tokenizer()("a a a a").ids == ids{7, 3, 3, 3, 3, 8});
+        CHECK(small_tokenizer()("a a a a").ids == id_list{7, 3, 3, 3, 3, 8});
         CHECK(small_tokenizer()("a a a a").cut == 0);
-        CHECK(small_tokenizer(2)("a").ids == ids{7, 8});
+        CHECK(small_tokenizer(2)("a").ids == id_list{7, 8});
         CHECK(small_tokenizer(2)("a").cut == 1);
     }
 
     TEST_CASE("bytes without a token are unknown and counted by word") {
         auto const prompt = small_tokenizer()("\xc3\xa4 cat");
-        CHECK(prompt.ids == ids{7, 8, 8, 5, 8, 9});
+        CHECK(prompt.ids == id_list{7, 8, 8, 5, 8, 9});
         REQUIRE(prompt.words.size() == 2);
         CHECK(prompt.words[0].text == "\xc3\xa4");
         CHECK(prompt.words[0].unknown == 2);
@@ -88,7 +88,7 @@ TEST_SUITE("reference/clip_tokenizer") {
 
     TEST_CASE("names of special tokens in a text are these tokens") {
         auto const prompt = small_tokenizer()("a<|endoftext|>cat pad");
-        CHECK(prompt.ids == ids{7, 3, 8, 5, 9, 8});
+        CHECK(prompt.ids == id_list{7, 3, 8, 5, 9, 8});
         CHECK(prompt.words.at(1).text == "<|endoftext|>");
         CHECK(small_tokenizer()("a<|ENDOFTEXT|>").words.size() == 4);
     }
@@ -136,7 +136,7 @@ TEST_SUITE("reference/clip_tokenizer") {
             REQUIRE(outputs.size() == prompts.size());
             for (std::size_t i = 0; i < prompts.size(); ++i) {
                 CAPTURE(prompts[i]);
-                auto expected = outputs[i].get<ids>();
+                auto expected = outputs[i].get<id_list>();
                 auto const cut = expected.front();
                 expected.erase(expected.begin());
                 expected.resize(tokenizer.context_length(), tokenizer.padding());

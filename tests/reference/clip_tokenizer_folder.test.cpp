@@ -19,18 +19,18 @@ using namespace genrender::testing;
 
 namespace {
 
-using texts = std::map<std::string, std::string>;
-using ids = std::vector<std::size_t>;
+using file_texts = std::map<std::string, std::string>;
+using id_list = std::vector<std::size_t>;
 
 /// Two words; the start is 3 and the end 4.
-texts small_files() {
+file_texts small_files() {
     return {{"vocab.json", R"({"a</w>": 0, "b</w>": 1, "!": 2, "<|startoftext|>": 3, "<|endoftext|>": 4})"},
             {"merges.txt", "#version: 0.2\n"},
             {"tokenizer_config.json", R"({"model_max_length": 6})"}};
 }
 
 /// The small files and others, which replace those of the same name.
-clip_tokenizer tokenizer_with(texts const& others) {
+clip_tokenizer tokenizer_with(file_texts const& others) {
     clip_tokenizer_files files{"f", small_files()};
     for (auto const& [name, text] : others) {
         files.texts[name] = text;
@@ -47,7 +47,7 @@ TEST_SUITE("reference/clip_tokenizer_folder") {
         for (auto const& [name, text] : small_files()) {
             std::ofstream(std::filesystem::path(folder.path()) / name) << text;
         }
-        CHECK(load_clip_tokenizer(folder.path())("a B").ids == ids{3, 0, 1, 4, 4, 4});
+        CHECK(load_clip_tokenizer(folder.path())("a B").ids == id_list{3, 0, 1, 4, 4, 4});
         std::filesystem::remove(std::filesystem::path(folder.path()) / "tokenizer_config.json");
         CHECK(load_clip_tokenizer(folder.path())("a B").ids.size() == 77);
     }
@@ -78,13 +78,13 @@ TEST_SUITE("reference/clip_tokenizer_folder") {
         auto const tokenizer =
             tokenizer_with({{"tokenizer.json", R"({"model": {"end_of_word_suffix": "</w>", "merges": [],
             "vocab": {"b</w>": 0, "<|startoftext|>": 1, "<|endoftext|>": 2}}})"}});
-        CHECK(tokenizer("b a").ids == ids{1, 0, 2, 2, 2, 2});
+        CHECK(tokenizer("b a").ids == id_list{1, 0, 2, 2, 2, 2});
         CHECK(tokenizer.size() == 3);
     }
 
     TEST_CASE("padding is what the files say, and stands in texts by its name") {
         auto const tokenizer = tokenizer_with({{"special_tokens_map.json", R"({"pad_token": "!"})"}});
-        CHECK(tokenizer("a!").ids == ids{3, 0, 2, 4, 2, 2});
+        CHECK(tokenizer("a!").ids == id_list{3, 0, 2, 4, 2, 2});
         CHECK(tokenizer.padding() == 2);
     }
 
@@ -106,7 +106,7 @@ TEST_SUITE("reference/clip_tokenizer_folder") {
 
     TEST_CASE("tokens that were learnt later come behind the vocabulary, in the order of their ids") {
         auto const tokenizer = tokenizer_with({{"added_tokens.json", R"({"<dog>": 6, "<cat>": 5})"}});
-        CHECK(tokenizer("a<CAT><dog>").ids == ids{3, 0, 5, 6, 4, 4});
+        CHECK(tokenizer("a<CAT><dog>").ids == id_list{3, 0, 5, 6, 4, 4});
         CHECK(tokenizer.size() == 7);
     }
 

@@ -14,7 +14,7 @@ using namespace genrender::reference;
 
 namespace {
 
-using words = std::vector<std::u32string_view>;
+using word_list = std::vector<std::u32string_view>;
 
 } // namespace
 
@@ -30,33 +30,33 @@ TEST_SUITE("reference/clip_words") {
 
     TEST_CASE("words are letters, single numbers and what is neither") {
         CHECK(clip_words(U"a red ball, 42 x1!! (ok)") ==
-              words{U"a", U"red", U"ball", U",", U"4", U"2", U"x", U"1", U"!!", U"(", U"ok", U")"});
-        CHECK(clip_words(U"\u00bd\u0663\u2177") == words{U"\u00bd", U"\u0663", U"\u2177"});
+              word_list{U"a", U"red", U"ball", U",", U"4", U"2", U"x", U"1", U"!!", U"(", U"ok", U")"});
+        CHECK(clip_words(U"\u00bd\u0663\u2177") == word_list{U"\u00bd", U"\u0663", U"\u2177"});
         CHECK(clip_words(U" \u00a0 ").empty());
         CHECK(clip_words(U"").empty());
     }
 
     TEST_CASE("a combining mark that is left over ends a word") {
-        CHECK(clip_words(U"q\u0323a") == words{U"q", U"\u0323", U"a"});
-        CHECK(clip_words(U"\U0001f469\u200d\U0001f680\ufe0fx") == words{U"\U0001f469\u200d\U0001f680\ufe0f", U"x"});
+        CHECK(clip_words(U"q\u0323a") == word_list{U"q", U"\u0323", U"a"});
+        CHECK(clip_words(U"\U0001f469\u200d\U0001f680\ufe0fx") == word_list{U"\U0001f469\u200d\U0001f680\ufe0f", U"x"});
     }
 
     TEST_CASE("English endings are words") {
-        CHECK(clip_words(U"it's don't we're they've i'm she'll he'd") == words{U"it", U"'s", U"don", U"'t", U"we",
-                                                                               U"'re", U"they", U"'ve", U"i", U"'m",
-                                                                               U"she", U"'ll", U"he", U"'d"});
+        CHECK(clip_words(U"it's don't we're they've i'm she'll he'd") == word_list{U"it", U"'s", U"don", U"'t", U"we",
+                                                                                   U"'re", U"they", U"'ve", U"i", U"'m",
+                                                                                   U"she", U"'ll", U"he", U"'d"});
         CHECK(clip_words(U"'sun 'x' ''s 'r 're") ==
-              words{U"'s", U"un", U"'", U"x", U"'", U"''", U"s", U"'", U"r", U"'re"});
+              word_list{U"'s", U"un", U"'", U"x", U"'", U"''", U"s", U"'", U"r", U"'re"});
         // Only where a word begins: behind other signs the apostrophe belongs to them.
-        CHECK(clip_words(U"!'s") == words{U"!'", U"s"});
-        CHECK(clip_words(U"it\u2019s") == words{U"it", U"\u2019", U"s"});
+        CHECK(clip_words(U"!'s") == word_list{U"!'", U"s"});
+        CHECK(clip_words(U"it\u2019s") == word_list{U"it", U"\u2019", U"s"});
     }
 
     TEST_CASE("names of special tokens are cut where a word begins") {
-        CHECK(clip_words(U"<|startoftext|>!") == words{U"<|", U"startoftext", U"|>", U"!"});
+        CHECK(clip_words(U"<|startoftext|>!") == word_list{U"<|", U"startoftext", U"|>", U"!"});
         CHECK(clip_words(U"a<|endoftext|><|endoftext|>") ==
-              words{U"a", U"<|", U"endoftext", U"|>", U"<|", U"endoftext", U"|>"});
-        CHECK(clip_words(U"!<|endoftext|>!") == words{U"!<|", U"endoftext", U"|>!"});
-        CHECK(clip_words(U"<|endoftext|") == words{U"<|", U"endoftext", U"|"});
+              word_list{U"a", U"<|", U"endoftext", U"|>", U"<|", U"endoftext", U"|>"});
+        CHECK(clip_words(U"!<|endoftext|>!") == word_list{U"!<|", U"endoftext", U"|>!"});
+        CHECK(clip_words(U"<|endoftext|") == word_list{U"<|", U"endoftext", U"|"});
     }
 }
