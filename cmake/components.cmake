@@ -27,6 +27,7 @@ genrender_package(nanoflann TARGET nanoflann::nanoflann INCLUDES "nanoflann[.]hp
 genrender_package(Threads MODULE TARGET Threads::Threads INCLUDES "thread>" LIBS -pthread)
 genrender_package(glm TARGET glm::glm INCLUDES "glm/" PKG_CONFIG glm)
 genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nlohmann/" PKG_CONFIG nlohmann_json)
+genrender_package(utf8proc MODULE TARGET utf8proc::utf8proc INCLUDES "utf8proc[.]h" PKG_CONFIG libutf8proc)
 
 set(genrender_components "")
 genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
@@ -208,12 +209,19 @@ genrender_component(evaluation HEADERS
     evaluation/time_slice.hpp
     testing/embedder_laws.hpp)
 
-genrender_component(reference PACKAGES nlohmann_json HEADERS
+genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference.hpp
     reference/activation.hpp
     reference/activation.inl
     reference/attention_matrices.hpp
+    reference/byte_pair_encoding.hpp
+    reference/byte_pair_files.hpp
     reference/checked_json.hpp
+    reference/clip_added_tokens.hpp
+    reference/clip_declarations.hpp
+    reference/clip_tokenizer.hpp
+    reference/clip_tokenizer_folder.hpp
+    reference/clip_words.hpp
     reference/config_file.hpp
     reference/controlnet.hpp
     reference/conv2d.hpp
@@ -247,6 +255,7 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/unet.hpp
     reference/unet_config.hpp
     reference/unet_encoder.hpp
+    reference/unicode_text.hpp
     reference/weight_panels.hpp
     reference/weight_panels.inl
     reference/weights.hpp)

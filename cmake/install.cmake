@@ -59,6 +59,7 @@ configure_package_config_file(cmake/genrenderConfig.cmake.in genrenderConfig.cma
     INSTALL_DESTINATION ${genrender_config_dir} NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
 write_basic_package_version_file(genrenderConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES
+    cmake/Findutf8proc.cmake
     ${CMAKE_CURRENT_BINARY_DIR}/genrenderConfig.cmake
     ${CMAKE_CURRENT_BINARY_DIR}/genrenderConfigVersion.cmake
     DESTINATION ${genrender_config_dir})

@@ -3,6 +3,9 @@
 # components that there are in genrender_defined, and their targets in genrender_targets.
 include(${CMAKE_CURRENT_LIST_DIR}/components.cmake)
 
+# Packages without a config file of their own.
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
+
 if(PROJECT_IS_TOP_LEVEL)
     set(genrender_default all)
 else()

@@ -4,7 +4,14 @@
 
 #include <genrender/reference/activation.hpp>
 #include <genrender/reference/attention_matrices.hpp>
+#include <genrender/reference/byte_pair_encoding.hpp>
+#include <genrender/reference/byte_pair_files.hpp>
 #include <genrender/reference/checked_json.hpp>
+#include <genrender/reference/clip_added_tokens.hpp>
+#include <genrender/reference/clip_declarations.hpp>
+#include <genrender/reference/clip_tokenizer.hpp>
+#include <genrender/reference/clip_tokenizer_folder.hpp>
+#include <genrender/reference/clip_words.hpp>
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/controlnet.hpp>
 #include <genrender/reference/conv2d.hpp>
@@ -36,5 +43,6 @@
 #include <genrender/reference/unet.hpp>
 #include <genrender/reference/unet_config.hpp>
 #include <genrender/reference/unet_encoder.hpp>
+#include <genrender/reference/unicode_text.hpp>
 #include <genrender/reference/weight_panels.hpp>
 #include <genrender/reference/weights.hpp>

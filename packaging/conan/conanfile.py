@@ -21,7 +21,10 @@ PACKAGES = {
     "scene": {"glm/[>=0.9.9]": "libglm-dev"},
     "inspection": {},
     "evaluation": {},
-    "reference": {"nlohmann_json/[>=3.10 <4]": "nlohmann-json3-dev"},
+    "reference": {
+        "nlohmann_json/[>=3.10 <4]": "nlohmann-json3-dev",
+        "utf8proc/[>=2.4 <3]": "libutf8proc-dev",
+    },
 }
 
 

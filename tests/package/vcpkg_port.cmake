@@ -24,7 +24,7 @@ function(expect_dependencies component path)
     endforeach()
     set(expected "")
     foreach(package IN LISTS genrender_${component}_PACKAGES)
-        if(NOT genrender_${package}_MODULE)
+        if(genrender_${package}_PKG_CONFIG) # What has none is no package, but threads.
             set(name ${package})
             if(names_${package})
                 set(name ${names_${package}})
@@ -101,7 +101,7 @@ include(${port_folder}/portfile.cmake)
 # What vcpkg asks of every package.
 file(GLOB_RECURSE files RELATIVE ${PREFIX} ${PREFIX}/*)
 list(FILTER files EXCLUDE REGEX
-    "^include/genrender/|^share/genrender/(genrender[A-Za-z_]*[.]cmake|usage|copyright)$|^share/pkgconfig/[a-z-]+[.]pc$")
+    "^include/genrender/|^share/genrender/((genrender|Find)[A-Za-z_0-9]*[.]cmake|usage|copyright)$|^share/pkgconfig/[a-z-]+[.]pc$")
 if(files OR NOT EXISTS ${PREFIX}/share/genrender/genrenderConfig.cmake)
     message(FATAL_ERROR "the port: share/genrender lacks its files, or these lie elsewhere: ${files}")
 endif()
