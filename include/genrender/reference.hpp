@@ -4,7 +4,12 @@
 
 #include <genrender/reference/activation.hpp>
 #include <genrender/reference/attention_matrices.hpp>
+#include <genrender/reference/autoencoder_config.hpp>
+#include <genrender/reference/autoencoder_kl.hpp>
 #include <genrender/reference/checked_json.hpp>
+#include <genrender/reference/clip_text_config.hpp>
+#include <genrender/reference/clip_text_encoder.hpp>
+#include <genrender/reference/clip_text_layer.hpp>
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/controlnet.hpp>
 #include <genrender/reference/conv2d.hpp>
@@ -19,6 +24,7 @@
 #include <genrender/reference/haar.hpp>
 #include <genrender/reference/layer_norm.hpp>
 #include <genrender/reference/linear.hpp>
+#include <genrender/reference/map_stripes.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/padded_map.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
@@ -30,11 +36,18 @@
 #include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
 #include <genrender/reference/site_list.hpp>
+#include <genrender/reference/spare_map.hpp>
 #include <genrender/reference/spatial_transformer.hpp>
 #include <genrender/reference/time_embedding.hpp>
 #include <genrender/reference/transformer_block.hpp>
 #include <genrender/reference/unet.hpp>
 #include <genrender/reference/unet_config.hpp>
 #include <genrender/reference/unet_encoder.hpp>
+#include <genrender/reference/vae_attention.hpp>
+#include <genrender/reference/vae_decoder.hpp>
+#include <genrender/reference/vae_encoder.hpp>
+#include <genrender/reference/vae_mid_block.hpp>
+#include <genrender/reference/vae_resampler.hpp>
+#include <genrender/reference/vae_resnet.hpp>
 #include <genrender/reference/weight_panels.hpp>
 #include <genrender/reference/weights.hpp>

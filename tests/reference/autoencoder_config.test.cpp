@@ -80,7 +80,7 @@ TEST_SUITE("reference/autoencoder_config") {
         check("out_channels", 1, "3");
         check("down_block_types", {"DownEncoderBlock2D"},
               "4 times \"DownEncoderBlock2D\", one for each of block_out_channels");
-        check("up_block_types", {"AttnUpDecoderBlock2D", "UpDecoderBlock2D", "UpDecoderBlock2D", "UpDecoderBlock2D"},
+        check("up_block_types", {"AttnUpDecoderBlock2D"},
               "4 times \"UpDecoderBlock2D\", one for each of block_out_channels");
         check("act_fn", "mish", "\"silu\" or \"swish\"");
         check("latents_mean", {0.5, 0.5, 0.5, 0.5}, "null");
