@@ -14,7 +14,7 @@ included. At last the seams of diffusers' tiles on a latent of 96 x 96, to compa
 """
 
 import pathlib
-import resource
+import re
 import subprocess
 import sys
 import time
@@ -97,7 +97,9 @@ def main():
     if len(sys.argv) > 3 and sys.argv[2] == "part":
         part = sys.argv[3]
         _, seconds = run(folder, part, load_file(folder / "ends.safetensors"), 3)
-        print(f"{seconds:.4g} s, at most {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024} MB")
+        # Not getrusage, which counts the parent's memory too.
+        peak = re.search(r"VmHWM:\s*(\d+)", pathlib.Path("/proc/self/status").read_text())
+        print(f"{seconds:.4g} s, at most {int(peak[1]) // 1024} MB")
         return
     if not (folder / "ends.safetensors").exists():
         write(folder)

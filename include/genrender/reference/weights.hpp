@@ -86,10 +86,12 @@ public:
     void require_all_taken() const {
         std::string surplus;
         std::size_t count = 0;
+        auto const is_left = [&](std::string const& name) {
+            return std::any_of(left_.begin(), left_.end(),
+                               [&](auto const& beginning) { return name.starts_with(beginning); });
+        };
         for (auto const& [name, file] : file_of_) {
-            auto const is_left = std::any_of(left_.begin(), left_.end(),
-                                             [&](auto const& beginning) { return name.starts_with(beginning); });
-            if (!is_left && !taken_.contains(name) && ++count <= 5) {
+            if (!taken_.contains(name) && !is_left(name) && ++count <= 5) {
                 surplus += (count > 1 ? ", " : "") + name;
             }
         }
