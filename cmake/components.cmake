@@ -214,11 +214,16 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/activation.hpp
     reference/activation.inl
     reference/attention_matrices.hpp
+    reference/autoencoder_config.hpp
+    reference/autoencoder_kl.hpp
     reference/byte_pair_encoding.hpp
     reference/byte_pair_files.hpp
     reference/checked_json.hpp
     reference/clip_added_tokens.hpp
     reference/clip_declarations.hpp
+    reference/clip_text_config.hpp
+    reference/clip_text_encoder.hpp
+    reference/clip_text_layer.hpp
     reference/clip_tokenizer.hpp
     reference/clip_tokenizer_folder.hpp
     reference/clip_words.hpp
@@ -238,6 +243,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/layer_norm.hpp
     reference/layer_norm.inl
     reference/linear.hpp
+    reference/map_stripes.hpp
     reference/network_conditioning.hpp
     reference/padded_map.hpp
     reference/prompt_vocabulary.hpp
@@ -249,6 +255,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/safetensors.hpp
     reference/seeded_tensor.hpp
     reference/site_list.hpp
+    reference/spare_map.hpp
     reference/spatial_transformer.hpp
     reference/time_embedding.hpp
     reference/transformer_block.hpp
@@ -256,6 +263,12 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/unet_config.hpp
     reference/unet_encoder.hpp
     reference/unicode_text.hpp
+    reference/vae_attention.hpp
+    reference/vae_decoder.hpp
+    reference/vae_encoder.hpp
+    reference/vae_mid_block.hpp
+    reference/vae_resampler.hpp
+    reference/vae_resnet.hpp
     reference/weight_panels.hpp
     reference/weight_panels.inl
     reference/weights.hpp)

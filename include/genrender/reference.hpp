@@ -4,11 +4,16 @@
 
 #include <genrender/reference/activation.hpp>
 #include <genrender/reference/attention_matrices.hpp>
+#include <genrender/reference/autoencoder_config.hpp>
+#include <genrender/reference/autoencoder_kl.hpp>
 #include <genrender/reference/byte_pair_encoding.hpp>
 #include <genrender/reference/byte_pair_files.hpp>
 #include <genrender/reference/checked_json.hpp>
 #include <genrender/reference/clip_added_tokens.hpp>
 #include <genrender/reference/clip_declarations.hpp>
+#include <genrender/reference/clip_text_config.hpp>
+#include <genrender/reference/clip_text_encoder.hpp>
+#include <genrender/reference/clip_text_layer.hpp>
 #include <genrender/reference/clip_tokenizer.hpp>
 #include <genrender/reference/clip_tokenizer_folder.hpp>
 #include <genrender/reference/clip_words.hpp>
@@ -26,6 +31,7 @@
 #include <genrender/reference/haar.hpp>
 #include <genrender/reference/layer_norm.hpp>
 #include <genrender/reference/linear.hpp>
+#include <genrender/reference/map_stripes.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/padded_map.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
@@ -37,6 +43,7 @@
 #include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
 #include <genrender/reference/site_list.hpp>
+#include <genrender/reference/spare_map.hpp>
 #include <genrender/reference/spatial_transformer.hpp>
 #include <genrender/reference/time_embedding.hpp>
 #include <genrender/reference/transformer_block.hpp>
@@ -44,5 +51,11 @@
 #include <genrender/reference/unet_config.hpp>
 #include <genrender/reference/unet_encoder.hpp>
 #include <genrender/reference/unicode_text.hpp>
+#include <genrender/reference/vae_attention.hpp>
+#include <genrender/reference/vae_decoder.hpp>
+#include <genrender/reference/vae_encoder.hpp>
+#include <genrender/reference/vae_mid_block.hpp>
+#include <genrender/reference/vae_resampler.hpp>
+#include <genrender/reference/vae_resnet.hpp>
 #include <genrender/reference/weight_panels.hpp>
 #include <genrender/reference/weights.hpp>

@@ -33,6 +33,24 @@ def weight_scale(fan_in):
     return 2.0 ** math.floor(math.log2(math.sqrt(3 / fan_in)))
 
 
+def fill(model, prefix):
+    """Sets every parameter of a model to the numbers of its name."""
+    for name, parameter in model.named_parameters():
+        x = tensor(prefix + name, *parameter.shape)
+        if parameter.dim() == 1:
+            x = 0.25 * x + (1 if name.endswith("weight") else 0)
+        else:
+            x = x * weight_scale(parameter[0].numel())
+        parameter.copy_(x)
+
+
+def numbers(single, double, kept=96):
+    """Evenly spaced elements of an output: one golden_output."""
+    step = (double.numel() - 1) // kept | 1  # odd, so that rows are not met at one column
+    single, precise = (x.double().flatten()[::step][:kept].tolist() for x in (single, double))
+    return {"step": step, "range": float(double.max() - double.min()), "single": single, "precise": precise}
+
+
 def write(name, data):
     """Writes tests/data/`name`: numbers with all their digits, lists of them in lines of at most 118 columns."""
 

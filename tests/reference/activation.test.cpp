@@ -52,6 +52,31 @@ TEST_SUITE("reference/activation") {
         }
     }
 
+    TEST_CASE_TEMPLATE("GELU and its stand-in replace each value at any size", Real, float, double) {
+        auto const bound = std::is_same_v<Real, float> ? 1e-6 : 1e-14;
+        for (std::size_t size = 1; size < 70; ++size) {
+            std::vector<Real> values(size);
+            for (std::size_t i = 0; i < size; ++i) {
+                values[i] = Real(0.37) * static_cast<Real>(i * 29 % 41) - Real(7);
+            }
+            auto exact = values;
+            auto quick = values;
+            gelu(std::span(exact));
+            quick_gelu(std::span(quick));
+            for (std::size_t i = 0; i < size; ++i) {
+                auto const x = static_cast<double>(values[i]);
+                REQUIRE(std::abs(static_cast<double>(exact[i]) - x * 0.5 * std::erfc(-x / std::sqrt(2.0))) <=
+                        bound * std::max(1.0, std::abs(x)));
+                REQUIRE(std::abs(static_cast<double>(quick[i]) - x / (1 + std::exp(-1.702 * x))) <=
+                        bound * std::max(1.0, std::abs(x)));
+            }
+        }
+        std::vector<Real> far{-1000, 1000};
+        quick_gelu(std::span(far));
+        CHECK(std::abs(far[0]) < Real(1e-30));
+        CHECK(far[1] == doctest::Approx(1000).epsilon(1e-6));
+    }
+
     TEST_CASE_TEMPLATE("gating by GELU agrees with the error function at any size and value", Real, float, double) {
         auto const bound = std::is_same_v<Real, float> ? 3e-7 : 1e-15;
         for (std::size_t size = 1; size < 40; ++size) {

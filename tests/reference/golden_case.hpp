@@ -21,6 +21,12 @@ struct golden_output {
     std::array<double, 96> precise; ///< in double precision, the sinusoids of time too
 };
 
+/// What golden_data.py calls numbers.
+inline golden_output read_golden_output(nlohmann::json const& from) {
+    return {from.at("step").get<std::size_t>(), from.at("range").get<double>(),
+            from.at("single").get<std::array<double, 96>>(), from.at("precise").get<std::array<double, 96>>()};
+}
+
 /// A UNet and its ControlNet. Weights and inputs are golden_values of their names.
 struct golden_case {
     std::string name;
@@ -37,21 +43,20 @@ struct golden_case {
 /// The tiny reference network, a small Stable Diffusion 1.5 and a small 2.x.
 inline std::array<golden_case, 3> const& golden_cases() {
     static std::array<golden_case, 3> const cases = [] {
-        auto const output = [](nlohmann::json const& from) {
-            return golden_output{from.at("step").get<std::size_t>(), from.at("range").get<double>(),
-                                 from.at("single").get<std::array<double, 96>>(),
-                                 from.at("precise").get<std::array<double, 96>>()};
-        };
         auto const file = golden_file("diffusers.json");
         std::array<golden_case, 3> read;
         for (std::size_t c = 0; c < read.size(); ++c) {
             auto const& from = file.at("cases").at(c);
             auto const grid = from.at("grid").get<std::array<std::size_t, 2>>();
-            read[c] = {from.at("name").get<std::string>(),   {grid[0], grid[1]},
-                       from.at("tokens").get<std::size_t>(), from.at("t").get<double>(),
-                       from.at("scale").get<double>(),       from.at("unet").dump(2),
-                       from.at("controlnet").dump(2),        output(from.at("alone")),
-                       output(from.at("controlled"))};
+            read[c] = {from.at("name").get<std::string>(),
+                       {grid[0], grid[1]},
+                       from.at("tokens").get<std::size_t>(),
+                       from.at("t").get<double>(),
+                       from.at("scale").get<double>(),
+                       from.at("unet").dump(2),
+                       from.at("controlnet").dump(2),
+                       read_golden_output(from.at("alone")),
+                       read_golden_output(from.at("controlled"))};
         }
         return read;
     }();

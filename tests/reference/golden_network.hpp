@@ -51,16 +51,23 @@ stack<Real, Rank> golden_stack(std::string const& name, std::array<std::size_t, 
     return result;
 }
 
-/// Writes `folder`/config.json and, beside it, every tensor that the network takes.
-template <class Network>
-void write_golden_model(std::filesystem::path const& folder, unet_config const& config, std::string const& json,
-                        std::string const& prefix) {
-    auto shapes = weights<float>::seeded(1, "");
-    site_list sites({8, 8});
-    Network const network(config, shapes, sites);
+/// Largest difference of an output [channels, height, width], or of as many numbers in that order, from what another
+/// project computed, as a share of its range.
+template <class Real>
+double difference_share(std::vector<Real> const& found, golden_output const& golden) {
+    auto const& expected = std::is_same_v<Real, float> ? golden.single : golden.precise;
+    double largest = 0;
+    for (std::size_t n = 0; n < expected.size(); ++n) {
+        largest = std::max(largest, std::abs(static_cast<double>(found.at(n * golden.step)) - expected[n]));
+    }
+    return largest / golden.range;
+}
+
+/// Names and values of tensors with a `prefix` before their names, as golden_data.py's fill sets them.
+inline std::map<std::string, std::vector<float>>
+golden_tensors(std::map<std::string, std::vector<std::size_t>> const& shapes, std::string const& prefix) {
     std::map<std::string, std::vector<float>> values;
-    std::map<std::string, safetensors_source> sources;
-    for (auto const& [name, shape] : shapes.taken()) {
+    for (auto const& [name, shape] : shapes) {
         std::size_t count = 1;
         for (auto const extent : shape) {
             count *= extent;
@@ -71,7 +78,21 @@ void write_golden_model(std::filesystem::path const& folder, unet_config const& 
         for (auto& value : x) {
             value = shape.size() > 1 ? scale * value : 0.25f * value + (name.ends_with("weight") ? 1.0f : 0.0f);
         }
-        sources[name] = {shape, x};
+    }
+    return values;
+}
+
+/// Writes `folder`/config.json and, beside it, every tensor that the network takes.
+template <class Network>
+void write_golden_model(std::filesystem::path const& folder, unet_config const& config, std::string const& json,
+                        std::string const& prefix) {
+    auto shapes = weights<float>::seeded(1, "");
+    site_list sites({8, 8});
+    Network const network(config, shapes, sites);
+    auto const values = golden_tensors(shapes.taken(), prefix);
+    std::map<std::string, safetensors_source> sources;
+    for (auto const& [name, shape] : shapes.taken()) {
+        sources[name] = {shape, values.at(name)};
     }
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "config.json") << json;

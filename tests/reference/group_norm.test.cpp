@@ -141,6 +141,22 @@ TEST_SUITE("reference/group_norm") {
         CHECK(std::equal(map_alone.corner(), std::as_const(map_alone).row(29) + 20 * 80, map_shared.corner()));
     }
 
+    TEST_CASE_TEMPLATE("some tokens under the line of all are those of the whole to the bit", Real, float, double) {
+        auto source = weights<Real>::seeded(1, "test");
+        group_norm<Real> const norm(source, "norm", 24, 8, Real(1e-5));
+        CHECK(norm.channels() == 24);
+        auto const in = random_stack<Real, 2>({30, 24}, 3);
+        padded_map<Real> map({5, 6}, 24);
+        norm.with_silu(map, in);
+        auto const line = norm.line_of(in);
+        stack<Real, 2> row({6, 24});
+        norm.apply_silu(row.view(), in.view().slice(12, 6), line);
+        CHECK(std::equal(row.data(), row.data() + row.size(), std::as_const(map).row(2)));
+        stack<Real, 2> narrow({6, 20});
+        CHECK_THROWS_WITH_AS(norm.apply_silu(row.view(), narrow, line), "group_norm: in is [6, 20], expected [6, 24]",
+                             shape_error);
+    }
+
     TEST_CASE("groups must divide the channels") {
         auto source = weights<float>::seeded(1, "test");
         CHECK_THROWS_WITH_AS((group_norm<float>(source, "norm", 6, 4, 1e-5f)),

@@ -22,19 +22,7 @@ import torch
 from diffusers import ControlNetModel, UNet2DConditionModel
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "data"))
-from golden_data import tensor, weight_scale, write  # noqa: E402
-
-KEPT = 96  # elements of an output
-
-
-def fill(model, prefix):
-    for name, parameter in model.named_parameters():
-        x = tensor(prefix + name, *parameter.shape)
-        if parameter.dim() == 1:
-            x = 0.25 * x + (1 if name.endswith("weight") else 0)
-        else:
-            x = x * weight_scale(parameter[0].numel())
-        parameter.copy_(x)
+from golden_data import fill, numbers, tensor, write  # noqa: E402
 
 
 class DoubleTimesteps(torch.nn.Module):
@@ -55,13 +43,6 @@ def outputs(unet, control, z, t, prompt, hint, scale):
     alone = unet(z, t, prompt).sample
     down, middle = control(z, t, prompt, hint, conditioning_scale=scale, return_dict=False)
     return alone, unet(z, t, prompt, down_block_additional_residuals=down, mid_block_additional_residual=middle).sample
-
-
-def numbers(single, double):
-    """One golden_output."""
-    step = (double.numel() - 1) // KEPT | 1  # odd, so that rows are not met at one column
-    single, kept = (x.double().flatten()[::step][:KEPT].tolist() for x in (single, double))
-    return {"step": step, "range": float(double.max() - double.min()), "single": single, "precise": kept}
 
 
 def case(name, *, grid, tokens, t, scale, embedding, out_channels, unet=None, control=None, **shared):

@@ -53,6 +53,22 @@ TEST_SUITE("reference/weights") {
                              file_error);
     }
 
+    TEST_CASE("tensors may be left over whose names begin as the network says") {
+        temporary_file const file("left.safetensors");
+        std::vector<float> const one{1.0f};
+        write_safetensors(file.path(), {{"x.a", {{1}, one}}, {"x.b", {{1}, one}}, {"y.c", {{1}, one}}});
+        auto store = weights<float>::from_file(file.path());
+        CHECK(store.holds("x.a"));
+        CHECK(!store.holds("x"));
+        CHECK(!weights<float>::seeded(1, "").holds("x.a"));
+        store.leave("x.");
+        auto const text = file.path() + ": 1 tensors have no place in the network: y.c, expected none";
+        CHECK_THROWS_WITH_AS(store.require_all_taken(), text.c_str(), file_error);
+        store.leave("y.c");
+        CHECK_NOTHROW(store.require_all_taken());
+        CHECK(store.taken().empty());
+    }
+
     TEST_CASE_TEMPLATE("the shards of a network are one store", Real, float, double) {
         temporary_file const first("first.safetensors");
         temporary_file const second("second.safetensors");

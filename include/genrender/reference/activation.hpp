@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pointwise functions between layers: SiLU and the exact GELU.
+// The pointwise functions between layers: SiLU, the exact GELU and the sigmoid that stands for it.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
@@ -52,13 +52,29 @@ void gate_by_gelu(std::span<Real> values, std::type_identity_t<std::span<Real co
 GENRENDER_INSTANCE(gate_by_gelu<float>);
 GENRENDER_INSTANCE(gate_by_gelu<double>);
 
+/// Replaces every x by x / (1 + exp(-1.702 x)), which is close to GELU (Hendrycks and Gimpel 2016); CLIP calls it
+/// quick_gelu.
+template <class Real>
+void quick_gelu(std::span<Real> values) {
+    GENRENDER_KERNEL(internal, quick_gelu<Real>)(values.data(), values.size());
+}
+
+/// Replaces every x by x Phi(x), the GELU in its exact form.
+template <class Real>
+void gelu(std::span<Real> values) {
+    GENRENDER_KERNEL(internal, gelu<Real>)(values.data(), values.size());
+}
+
+GENRENDER_INSTANCE(quick_gelu<float>);
+GENRENDER_INSTANCE(quick_gelu<double>);
+
 /// x Phi(x).
 template <class Real>
-Real gelu(Real x) {
-    Real result{1};
-    gate_by_gelu<Real>({&result, 1}, {&x, 1});
-    return result;
-}
+    requires std::is_floating_point_v<Real> Real gelu(Real x) {
+        Real result{1};
+        gate_by_gelu<Real>({&result, 1}, {&x, 1});
+        return result;
+    }
 
 } // namespace GENRENDER_UNIT
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SiLU and GELU, with the vectors of one target.
+// SiLU, GELU and its stand-in, with the vectors of one target.
 
 namespace genrender::reference::internal::GENRENDER_TARGET {
 
@@ -40,6 +40,22 @@ template <class Real>
 void silu(Real* values, std::size_t count) {
     each_register(values, values, count,
                   [](std::size_t, auto const& x) GENRENDER_ALWAYS_INLINE { return silu_of<Real>(x); });
+}
+
+/// See quick_gelu in reference/activation.hpp.
+template <class Real>
+void quick_gelu(Real* values, std::size_t count) {
+    constexpr auto slope = static_cast<Real>(1.702);
+    each_register(values, values, count, [](std::size_t, auto const& x) GENRENDER_ALWAYS_INLINE {
+        return silu_of<Real>(x * slope) * (1 / slope);
+    });
+}
+
+/// See gelu in reference/activation.hpp.
+template <class Real>
+void gelu(Real* values, std::size_t count) {
+    each_register(values, values, count,
+                  [](std::size_t, auto const& x) GENRENDER_ALWAYS_INLINE { return gelu_of<Real>(x); });
 }
 
 /// See gate_by_gelu in reference/activation.hpp.

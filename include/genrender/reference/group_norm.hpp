@@ -59,11 +59,24 @@ public:
     /// shape_error if they do not fit.
     void with_silu(padded_map<Real>& out, in_view<Real, 2> in, any_loop const& loop = {}) const;
 
+    /// Channels that it takes and gives.
+    std::size_t channels() const { return weight_.size(); }
+
+    /// What the moments of `in` [tokens, channels], whose rows are contiguous, make of each channel, for apply_silu a
+    /// part at a time. Channels are shared out over `loop`. Throws shape_error if it does not fit.
+    internal::line_by_channel<Real> line_of(in_view<Real, 2> in, any_loop const& loop = {}) const;
+
+    /// Writes the SiLU of the result for some tokens of what the line is of; both [tokens, channels] with contiguous
+    /// rows. Throws shape_error if they do not fit.
+    void apply_silu(strided_view<Real, 2> out, in_view<Real, 2> in, internal::line_by_channel<Real> const& line) const {
+        require_shape("group_norm", "in", in, {in.extent(0), weight_.size()});
+        require_shape("group_norm", "out", out, in.extents());
+        GENRENDER_KERNEL(internal, apply_line<true, Real>)(out, in, line.scale.data(), line.shift.data());
+    }
+
 private:
     /// Tokens that one thread takes at a time.
     static constexpr std::size_t block = 256;
-
-    internal::line_by_channel<Real> line_of(strided_view<Real const, 2> const& in, any_loop const& loop) const;
 
     std::size_t groups_;
     Real epsilon_;
@@ -102,8 +115,8 @@ void group_norm<Real>::with_silu(padded_map<Real>& out, in_view<Real, 2> in, any
 }
 
 template <class Real>
-internal::line_by_channel<Real> group_norm<Real>::line_of(strided_view<Real const, 2> const& in,
-                                                          any_loop const& loop) const {
+internal::line_by_channel<Real> group_norm<Real>::line_of(in_view<Real, 2> in, any_loop const& loop) const {
+    require_shape("group_norm", "in", in, {in.extent(0), weight_.size()});
     auto const channels = weight_.size();
     auto const tokens = in.extent(0);
     std::vector<double> sum(channels);

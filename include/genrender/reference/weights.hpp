@@ -8,6 +8,7 @@
 #include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -74,12 +75,23 @@ public:
         return {values.begin(), values.end()};
     }
 
-    /// Throws file_error naming the tensors of the files that nobody took.
+    /// Whether one of the files holds a tensor of this name. A seeded store, which makes what it is asked for, holds
+    /// none.
+    bool holds(std::string const& name) const { return file_of_.contains(name); }
+
+    /// Lets tensors be left over whose names begin so: what a file holds beside the network that is built.
+    void leave(std::string const& beginning) { left_.push_back(beginning); }
+
+    /// Throws file_error naming the tensors of the files that nobody took or left.
     void require_all_taken() const {
         std::string surplus;
         std::size_t count = 0;
+        auto const is_left = [&](std::string const& name) {
+            return std::any_of(left_.begin(), left_.end(),
+                               [&](auto const& beginning) { return name.starts_with(beginning); });
+        };
         for (auto const& [name, file] : file_of_) {
-            if (!taken_.contains(name) && ++count <= 5) {
+            if (!taken_.contains(name) && !is_left(name) && ++count <= 5) {
                 surplus += (count > 1 ? ", " : "") + name;
             }
         }
@@ -137,6 +149,7 @@ private:
     std::uint64_t seed_ = 0;
     std::string network_;
     std::map<std::string, std::vector<std::size_t>> taken_;
+    std::vector<std::string> left_;
 };
 
 } // namespace genrender::reference

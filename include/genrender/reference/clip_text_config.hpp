@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// The architecture of CLIP's text encoder, and its config.json as transformers writes it.
+#pragma once
+
+#include <genrender/core/begin_header.inl>
+
+#include <genrender/core/error.hpp>
+#include <genrender/reference/config_file.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace genrender::reference {
+
+/// The function between the two matrices of a layer's MLP.
+enum class clip_activation {
+    quick_gelu, ///< x / (1 + exp(-1.702 x)): OpenAI's CLIP, Stable Diffusion 1.x
+    gelu,       ///< x Phi(x), exact: OpenCLIP, Stable Diffusion 2.x
+};
+
+/// What transformers' `CLIPTextModel` is built from, in its field names. The defaults are the text encoder of Stable
+/// Diffusion 1.x; with hidden_size 1024, intermediate_size 4096, 16 heads, 23 layers and gelu it is that of 2.x.
+struct clip_text_config {
+    std::size_t vocab_size = 49408;                           ///< rows of the table of tokens
+    std::size_t hidden_size = 768;                            ///< channels of a token
+    std::size_t intermediate_size = 3072;                     ///< channels between the matrices of an MLP
+    std::size_t num_hidden_layers = 12;                       ///< transformer layers
+    std::size_t num_attention_heads = 12;                     ///< heads of each, a divisor of hidden_size
+    std::size_t max_position_embeddings = 77;                 ///< most tokens of a text
+    clip_activation hidden_act = clip_activation::quick_gelu; ///< of each MLP
+    double layer_norm_eps = 1e-5;                             ///< of every LayerNorm
+};
+
+/// Throws value_error unless a text encoder can be built: no zero, heads that divide hidden_size, an epsilon above 0.
+inline void require_config(clip_text_config const& config) {
+    auto const function = "clip_text_config";
+    for (auto const count : {config.vocab_size, config.hidden_size, config.intermediate_size, config.num_hidden_layers,
+                             config.num_attention_heads, config.max_position_embeddings}) {
+        require_value(count > 0, function, "a count", count, "above 0");
+    }
+    require_value(config.hidden_size % config.num_attention_heads == 0, function, "num_attention_heads",
+                  config.num_attention_heads, "a divisor of hidden_size");
+    require_value(config.layer_norm_eps > 0 && config.layer_norm_eps < 1, function, "layer_norm_eps",
+                  config.layer_norm_eps, "a number in (0, 1)");
+}
+
+/// The architecture in the config.json of a CLIPTextModel. Absent options have transformers' defaults. Throws file_error
+/// naming the option that is unknown or has a value that the encoder here cannot follow.
+inline clip_text_config read_clip_text_config(std::filesystem::path const& path) {
+    config_file file(path);
+    file.expect("model_type", {"clip_text_model"});
+    file.expect("architectures", {nullptr, nlohmann::json::array({"CLIPTextModel"})});
+    clip_text_config config;
+    config.vocab_size = file.count("vocab_size", 49408);
+    config.hidden_size = file.count("hidden_size", 512);
+    config.intermediate_size = file.count("intermediate_size", 2048);
+    config.num_hidden_layers = file.count("num_hidden_layers", 12);
+    config.num_attention_heads = file.count("num_attention_heads", 8);
+    config.max_position_embeddings = file.count("max_position_embeddings", 77);
+    auto const activation = file.text("hidden_act", "quick_gelu");
+    file.require(activation == "quick_gelu" || activation == "gelu", "hidden_act", "\"quick_gelu\" or \"gelu\"");
+    config.hidden_act = activation == "gelu" ? clip_activation::gelu : clip_activation::quick_gelu;
+    config.layer_norm_eps = file.number("layer_norm_eps", 1e-5);
+    file.require(config.layer_norm_eps > 0 && config.layer_norm_eps < 1, "layer_norm_eps", "a number in (0, 1)");
+    file.require(config.hidden_size % config.num_attention_heads == 0, "num_attention_heads",
+                 "a divisor of the " + std::to_string(config.hidden_size) + " of hidden_size");
+    // Names and versions; how weights began and what training dropped; the pooled output, which nobody asks for here,
+    // and the tokens that it looks for; what a caller of transformers gets back.
+    file.ignore({"_name_or_path", "_class_name", "transformers_version", "torch_dtype", "dtype", "attention_dropout",
+                 "dropout", "initializer_factor", "initializer_range", "projection_dim", "bos_token_id", "eos_token_id",
+                 "pad_token_id", "output_attentions", "output_hidden_states", "return_dict", "use_return_dict"});
+    file.require_all_taken();
+    return config;
+}
+
+/// The config.json of a CLIPTextModel.
+inline nlohmann::json clip_text_json(clip_text_config const& config) {
+    return {{"architectures", {"CLIPTextModel"}},
+            {"model_type", "clip_text_model"},
+            {"vocab_size", config.vocab_size},
+            {"hidden_size", config.hidden_size},
+            {"intermediate_size", config.intermediate_size},
+            {"num_hidden_layers", config.num_hidden_layers},
+            {"num_attention_heads", config.num_attention_heads},
+            {"max_position_embeddings", config.max_position_embeddings},
+            {"hidden_act", config.hidden_act == clip_activation::gelu ? "gelu" : "quick_gelu"},
+            {"layer_norm_eps", config.layer_norm_eps}};
+}
+
+} // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>
