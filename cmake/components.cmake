@@ -212,6 +212,8 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/activation.inl
     reference/attention_matrices.hpp
     reference/checked_json.hpp
+    reference/compvis_architecture.hpp
+    reference/compvis_names.hpp
     reference/config_file.hpp
     reference/controlnet.hpp
     reference/conv2d.hpp
@@ -228,8 +230,11 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/layer_norm.hpp
     reference/layer_norm.inl
     reference/linear.hpp
+    reference/model_part.hpp
     reference/network_conditioning.hpp
     reference/padded_map.hpp
+    reference/pickles.hpp
+    reference/pipeline_files.hpp
     reference/prompt_vocabulary.hpp
     reference/reference_embedder.hpp
     reference/reference_network.hpp
@@ -238,13 +243,16 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/resnet_block.hpp
     reference/safetensors.hpp
     reference/seeded_tensor.hpp
+    reference/single_file.hpp
     reference/site_list.hpp
     reference/spatial_transformer.hpp
+    reference/tensor_place.hpp
     reference/time_embedding.hpp
     reference/transformer_block.hpp
     reference/unet.hpp
     reference/unet_config.hpp
     reference/unet_encoder.hpp
+    reference/weight_files.hpp
     reference/weight_panels.hpp
     reference/weight_panels.inl
     reference/weights.hpp)

@@ -45,41 +45,6 @@ struct test_folder {
 } // namespace
 
 TEST_SUITE("reference/diffusers_folder") {
-    TEST_CASE("weights are found whole or in shards and in full precision before half") {
-        test_folder const folder;
-        auto const names = [&] {
-            std::vector<std::string> found;
-            for (auto const& path : safetensors_paths(folder.path, "model")) {
-                found.push_back(std::filesystem::path(path).filename().string());
-            }
-            return found;
-        };
-        CHECK_THROWS_WITH_AS(names(),
-                             (folder.path.string() + ": there is no model.safetensors, expected one, or its .fp16, or "
-                                                     "an index of shards")
-                                 .c_str(),
-                             file_error);
-        folder.write("model.safetensors.index.fp16.json", R"({"weight_map": {"a": "h1", "b": "h2", "c": "h1"}})");
-        CHECK(names() == std::vector<std::string>{"h1", "h2"});
-        folder.touch("model.fp16.safetensors");
-        CHECK(names() == std::vector<std::string>{"model.fp16.safetensors"});
-        folder.write("model.safetensors.index.json",
-                     R"({"metadata": {"total_size": 9}, "weight_map": {"a": "m-1", "b": "m-2"}})");
-        CHECK(names() == std::vector<std::string>{"m-1", "m-2"});
-        folder.touch("model.safetensors");
-        CHECK(names() == std::vector<std::string>{"model.safetensors"});
-    }
-
-    TEST_CASE("an index that is none or points elsewhere is refused") {
-        for (auto const* map : {"null", "{}", "[\"a\"]", R"({"a": 1})", R"({"a": "../b"})", R"({"a": "/etc/b"})",
-                                R"({"a": ".."})", R"({"a": ""})", R"({"a": "c:b"})", R"({"a": "d\\b"})"}) {
-            test_folder const folder;
-            folder.write("model.safetensors.index.json", std::string(R"({"weight_map": )") + map + "}");
-            CAPTURE(map);
-            CHECK_THROWS_AS(safetensors_paths(folder.path, "model"), file_error);
-        }
-    }
-
     TEST_CASE("shards are loaded as one network") {
         test_folder const folder;
         auto const& golden = golden_cases()[2];

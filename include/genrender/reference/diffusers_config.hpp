@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 // Every option that diffusers 0.42 writes for UNet2DConditionModel and ControlNetModel is read below: it is honoured,
@@ -178,20 +179,25 @@ inline nlohmann::json encoder_json(unet_config const& config) {
 
 } // namespace internal
 
-/// The architecture in the config.json of a UNet and of its ControlNet and in scheduler_config.json. Throws file_error
-/// naming the option: one that is unknown, has a value that the networks here cannot follow, or differs between UNet
-/// and ControlNet; value_error as require_config does.
-inline unet_config read_diffusers_config(std::filesystem::path const& unet, std::filesystem::path const& controlnet,
-                                         std::filesystem::path const& scheduler) {
+/// The architecture in the options of a UNet, of its ControlNet and of their scheduler. Throws file_error naming the
+/// option: one that is unknown, has a value that the networks here cannot follow, or differs between UNet and
+/// ControlNet; value_error as require_config does.
+inline unet_config read_diffusers_config(config_file unet, config_file controlnet, config_file scheduler) {
     unet_config config;
-    config_file unet_file(unet);
-    internal::read_unet_options(config, unet_file);
-    config_file controlnet_file(controlnet);
-    internal::read_controlnet_options(config, controlnet_file, unet_file);
-    config_file scheduler_file(scheduler);
-    internal::read_scheduler_options(config, scheduler_file);
+    internal::read_unet_options(config, unet);
+    internal::read_controlnet_options(config, controlnet, unet);
+    internal::read_scheduler_options(config, scheduler);
     require_config(config);
     return config;
+}
+
+/// The same of files: config.json of UNet and ControlNet, scheduler_config.json.
+inline unet_config read_diffusers_config(std::filesystem::path const& unet, std::filesystem::path const& controlnet,
+                                         std::filesystem::path const& scheduler) {
+    // In this order: the first that cannot be read is named.
+    config_file unet_file(unet);
+    config_file controlnet_file(controlnet);
+    return read_diffusers_config(std::move(unet_file), std::move(controlnet_file), config_file(scheduler));
 }
 
 /// The config.json of a UNet: the options that are not diffusers' only choice.

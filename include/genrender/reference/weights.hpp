@@ -7,11 +7,13 @@
 #include <genrender/core/error.hpp>
 #include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
+#include <genrender/reference/tensor_place.hpp>
 
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,17 +32,20 @@ public:
     /// does, and for a tensor that is in two of them.
     static weights from_files(std::vector<std::string> const& paths) {
         require_value(!paths.empty(), "weights", "paths", "empty", "at least one");
-        weights result;
+        tensor_places places;
         for (auto const& path : paths) {
-            safetensors_file const& file = result.files_.emplace_back(path);
-            for (auto const& [name, entry] : file.entries()) {
-                auto const [other, is_new] = result.file_of_.emplace(name, result.files_.size() - 1);
-                if (!is_new) {
-                    throw file_error(path + ": tensor " + name + " is in " + result.files_[other->second].path() +
-                                     " too, expected each tensor once");
-                }
-            }
+            add_places(places, reference::places_of(std::make_shared<safetensors_file const>(path)));
         }
+        return from_places(std::move(places), paths.front());
+    }
+
+    /// Tensors wherever they lie. `path` is the file or folder to blame for what is in no file. Throws value_error if it
+    /// is empty.
+    static weights from_places(tensor_places places, std::string path) {
+        require_value(!path.empty(), "weights", "path", "empty", "that of a file or a folder");
+        weights result;
+        result.places_ = std::move(places);
+        result.path_ = std::move(path);
         return result;
     }
 
@@ -57,18 +62,13 @@ public:
     /// is [..], expected [..]`.
     std::vector<Real> take(std::string const& name, std::vector<std::size_t> const& shape) {
         taken_.insert_or_assign(name, shape);
-        if (!files_.empty()) {
-            auto const& file = file_with(name);
-            auto const found = file.entries().find(name);
-            if (found == file.entries().end()) {
-                throw file_error(file.path() + ": there is no tensor " + name + ", expected one of shape " +
-                                 extents_text(shape));
-            }
-            if (found->second.shape != shape) {
-                throw file_error(file.path() + ": tensor " + name + " is " + extents_text(found->second.shape) +
+        if (is_of_files()) {
+            auto const& place = place_of(name, shape);
+            if (place.shape != shape) {
+                throw file_error(place.file->path() + ": tensor " + name + " is " + extents_text(place.shape) +
                                  ", expected " + extents_text(shape));
             }
-            return file.template read<Real>(name);
+            return place.template read<Real>();
         }
         auto const values = seeded_tensor(seed_, network_, name, shape);
         return {values.begin(), values.end()};
@@ -76,17 +76,15 @@ public:
 
     /// Throws file_error naming the tensors of the files that nobody took.
     void require_all_taken() const {
-        std::string surplus;
-        std::size_t count = 0;
-        for (auto const& [name, file] : file_of_) {
-            if (!taken_.contains(name) && ++count <= 5) {
-                surplus += (count > 1 ? ", " : "") + name;
+        counted_names surplus;
+        for (auto const& [name, place] : places_) {
+            if (!taken_.contains(name)) {
+                surplus.add(name);
             }
         }
-        if (count > 0) {
-            throw file_error(files_.front().path() + ": " + std::to_string(count) +
-                             " tensors have no place in the network: " + surplus + (count > 5 ? ", ..." : "") +
-                             ", expected none");
+        if (surplus.count() > 0) {
+            throw file_error(path_ + ": " + std::to_string(surplus.count()) +
+                             " tensors have no place in the network: " + surplus.text() + ", expected none");
         }
     }
 
@@ -106,8 +104,8 @@ public:
     std::map<std::string, std::vector<float>> values() const {
         std::map<std::string, std::vector<float>> result;
         for (auto const& [name, shape] : taken_) {
-            result[name] = files_.empty() ? seeded_tensor(seed_, network_, name, shape)
-                                          : file_with(name).template read<float>(name);
+            result[name] = is_of_files() ? place_of(name, shape).template read<float>()
+                                          : seeded_tensor(seed_, network_, name, shape);
         }
         return result;
     }
@@ -126,14 +124,18 @@ public:
 private:
     weights() = default;
 
-    /// The file that holds a tensor, or, if none does, the one to blame.
-    safetensors_file const& file_with(std::string const& name) const {
-        auto const found = file_of_.find(name);
-        return files_[found == file_of_.end() ? 0 : found->second];
+    tensor_place const& place_of(std::string const& name, std::vector<std::size_t> const& shape) const {
+        auto const found = places_.find(name);
+        if (found == places_.end()) {
+            throw file_error(path_ + ": there is no tensor " + name + ", expected one of shape " + extents_text(shape));
+        }
+        return found->second;
     }
 
-    std::vector<safetensors_file> files_;
-    std::map<std::string, std::size_t> file_of_;
+    bool is_of_files() const { return !path_.empty(); }
+
+    tensor_places places_;
+    std::string path_; // none if tensors are random
     std::uint64_t seed_ = 0;
     std::string network_;
     std::map<std::string, std::vector<std::size_t>> taken_;
