@@ -230,6 +230,8 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/layer_norm.hpp
     reference/layer_norm.inl
     reference/linear.hpp
+    reference/lora_file.hpp
+    reference/lora_merge.hpp
     reference/model_part.hpp
     reference/network_conditioning.hpp
     reference/padded_map.hpp

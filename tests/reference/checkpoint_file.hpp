@@ -44,7 +44,7 @@ struct tensor_list {
 inline unet_config small_checkpoint_config(std::size_t cross_attention_dim) {
     unet_config config;
     config.in_channels = config.out_channels = 4;
-    config.block_out_channels = {32, 32, 64, 64};
+    config.block_out_channels = {32, 64, 96, 96};
     config.level_has_attention = {true, true, true, false};
     config.layers_per_block = 2;
     config.attention_head_dim = {8, 8, 8, 8};

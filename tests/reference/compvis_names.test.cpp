@@ -14,17 +14,17 @@ using namespace genrender;
 
 using namespace genrender::reference;
 
-namespace {
-
-/// The one tensor that a stored one is, or "none", "some".
-std::string name_of(std::string const& stored, compvis_layout const& layout = {}) {
-    auto const named = diffusers_names(stored, layout);
-    return !named ? "none" : named->tensors.size() != 1 ? "some" : named->tensors.front().name;
-}
-
-} // namespace
-
 TEST_SUITE("reference/compvis_names") {
+    namespace {
+
+    /// The one tensor that a stored one is, or "none", "some".
+    std::string name_of(std::string const& stored, compvis_layout const& layout = {}) {
+        auto const named = diffusers_names(stored, layout);
+        return !named ? "none" : named->tensors.size() != 1 ? "some" : named->tensors.front().name;
+    }
+
+    } // namespace
+
     TEST_CASE("every tensor of Stable Diffusion and its ControlNet has the name that diffusers gives it") {
         auto const golden = testing::golden_file("compvis_names.json");
         std::size_t tensors = 0;
@@ -87,10 +87,11 @@ TEST_SUITE("reference/compvis_names") {
               "model.diffusion_model.input_blocks.x.0.in_layers.0.weight", "model.diffusion_model.input_blocks.1",
               "model.diffusion_model.input_blocks.99999999999999999999.0.in_layers.0.weight",
               "model.diffusion_model.input_blocks.-1.0.in_layers.0.weight",
-              "model.diffusion_model.input_blocks.1.0.in_layers.1.weight", "model.diffusion_model.zero_convs.0.0.weight",
-              "model.diffusion_model.label_emb.0.0.weight", "control_model.out.2.weight",
-              "control_model.output_blocks.0.0.in_layers.0.weight", "first_stage_model.encoder.up.0.block.0.norm1.bias",
-              "first_stage_model.decoder.up.7.block.0.norm1.bias", "first_stage_model.mid.attn_1.q.weight",
+              "model.diffusion_model.input_blocks.1.0.in_layers.1.weight",
+              "model.diffusion_model.zero_convs.0.0.weight", "model.diffusion_model.label_emb.0.0.weight",
+              "control_model.out.2.weight", "control_model.output_blocks.0.0.in_layers.0.weight",
+              "first_stage_model.encoder.up.0.block.0.norm1.bias", "first_stage_model.decoder.up.7.block.0.norm1.bias",
+              "first_stage_model.mid.attn_1.q.weight",
               "cond_stage_model.model.transformer.resblocks.0.attn.in_proj_.weight", "cond_stage_model.transformer.x",
               "conv_in.weight"}) {
             CAPTURE(name);

@@ -48,7 +48,8 @@ TEST_SUITE("reference/pickles") {
     TEST_CASE("the refusal says why and how to convert") {
         CHECK_THROWS_WITH_AS(
             refuse_pickle("some/model.ckpt"),
-            "some/model.ckpt: file is a Python pickle, and to read one is to run the code in it, expected a safetensors "
+            "some/model.ckpt: file is a Python pickle, and to read one is to run the code in it, expected a "
+            "safetensors "
             "file; if you trust where it is from, convert it with: python3 -c \"import sys, torch; from "
             "safetensors.torch import save_file; s = torch.load(sys.argv[1], map_location='cpu', weights_only=True); s "
             "= s.get('state_dict', s); save_file({k: v.clone().contiguous() for k, v in s.items() if "

@@ -16,30 +16,30 @@ using namespace genrender;
 using namespace genrender::reference;
 using namespace genrender::testing;
 
-namespace {
-
-/// What opening a file of these tensors says.
-std::string refusal(tensor_list const& tensors) {
-    temporary_file const file("checkpoint.safetensors");
-    tensors.write(file.path());
-    try {
-        single_file const opened(file.path());
-    } catch (file_error const& error) {
-        std::string const text = error.what();
-        return text.starts_with(file.path() + ": ") ? text.substr(file.path().size() + 2) : "another path: " + text;
-    }
-    return "none";
-}
-
-/// A UNet, with leftovers of training.
-tensor_list small_unet(std::size_t cross_attention_dim = 768) {
-    auto tensors = stored_network<unet<float>>(small_checkpoint_config(cross_attention_dim), "unet");
-    return tensors.add("betas", {10}).add("model_ema.decay", {1}).add("first_stage_model.loss.logvar", {1});
-}
-
-} // namespace
-
 TEST_SUITE("reference/single_file") {
+    namespace {
+
+    /// What opening a file of these tensors says.
+    std::string refusal(tensor_list const& tensors) {
+        temporary_file const file("checkpoint.safetensors");
+        tensors.write(file.path());
+        try {
+            single_file const opened(file.path());
+        } catch (file_error const& error) {
+            std::string const text = error.what();
+            return text.starts_with(file.path() + ": ") ? text.substr(file.path().size() + 2) : "another path: " + text;
+        }
+        return "none";
+    }
+
+    /// A UNet, with leftovers of training.
+    tensor_list small_unet(std::size_t cross_attention_dim = 768) {
+        auto tensors = stored_network<unet<float>>(small_checkpoint_config(cross_attention_dim), "unet");
+        return tensors.add("betas", {10}).add("model_ema.decay", {1}).add("first_stage_model.loss.logvar", {1});
+    }
+
+    } // namespace
+
     TEST_CASE("the networks of a checkpoint have the values of the stored tensors and all are taken") {
         for (std::size_t const width : {768U, 1024U}) {
             temporary_file const path("checkpoint.safetensors");
@@ -79,9 +79,8 @@ TEST_SUITE("reference/single_file") {
             control.write(control_path.path());
             single_file const file(path.path(), prediction::velocity);
             single_file const control_file(control_path.path());
-            auto const config =
-                read_diffusers_config(file.options(model_part::unet), control_file.options(model_part::controlnet),
-                                      file.scheduler_options());
+            auto const config = read_diffusers_config(
+                file.options(model_part::unet), control_file.options(model_part::controlnet), file.scheduler_options());
             CHECK(config.block_out_channels == expected.block_out_channels);
             CHECK(config.level_has_attention == expected.level_has_attention);
             CHECK(config.attention_head_dim == expected.attention_head_dim);
@@ -201,8 +200,9 @@ TEST_SUITE("reference/single_file") {
         says(with("model.diffusion_model.time_embed.cond_proj.weight"), "latent consistency model (LCM)");
         says(with("lora_unet_mid_block_attentions_0_proj_in.alpha"), "checkpoint is a LoRA");
         says(with("down_blocks.0.resnets.0.conv1.weight"), "one network of a diffusers folder");
-        says(tensor_list(unet).add(first, {32, 9, 3, 3}),
-             "checkpoint is for inpainting (its UNet takes 9 channels), expected one that takes the 4 of latents alone");
+        says(
+            tensor_list(unet).add(first, {32, 9, 3, 3}),
+            "checkpoint is for inpainting (its UNet takes 9 channels), expected one that takes the 4 of latents alone");
         says(tensor_list(unet).add(first, {32, 8, 3, 3}), "InstructPix2Pix");
         says(tensor_list(unet).add(first, {32, 5, 3, 3}), "depth2img");
     }
@@ -212,14 +212,16 @@ TEST_SUITE("reference/single_file") {
         for (auto const* name : {"a", "b", "c", "d", "e", "f"}) {
             tensors.add(name, {1});
         }
-        CHECK(refusal(tensors) == "6 tensors are unknown: a, b, c, d, e, ..., expected those of Stable Diffusion 1.x or "
-                                  "2.x or of a ControlNet");
+        CHECK(refusal(tensors) ==
+              "6 tensors are unknown: a, b, c, d, e, ..., expected those of Stable Diffusion 1.x or "
+              "2.x or of a ControlNet");
         CHECK(refusal(tensor_list()).starts_with("file holds no network"));
         CHECK(refusal(tensor_list().add("betas", {3})).starts_with("file holds no network"));
         auto odd = small_unet();
         odd.add("model.diffusion_model.middle_block.1.transformer_blocks.0.attn2.to_k.weight", {64, 700});
-        CHECK(refusal(odd) == "checkpoint attends to tokens of 700 channels, expected the 768 of Stable Diffusion 1.x or "
-                              "the 1024 of 2.x");
+        CHECK(refusal(odd) ==
+              "checkpoint attends to tokens of 700 channels, expected the 768 of Stable Diffusion 1.x or "
+              "the 1024 of 2.x");
         CHECK(refusal(tensor_list().add("model.diffusion_model.out.0.weight", {32})) ==
               "there is no tensor conv_in.weight, expected one to infer the architecture from");
     }

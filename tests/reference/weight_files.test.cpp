@@ -16,41 +16,41 @@ using namespace genrender;
 using namespace genrender::reference;
 using testing::temporary_file;
 
-namespace {
-
-/// A folder of weights.
-struct weight_folder {
-    temporary_file file{"weights"};
-    std::filesystem::path path = file.path();
-
-    weight_folder() { std::filesystem::create_directories(path); }
-
-    void write(std::string const& name, std::string const& text) const { std::ofstream(path / name) << text; }
-    /// A file with some tensors, all of one element.
-    void write_tensors(std::string const& name, std::vector<std::string> const& tensors, float value = 1) const {
-        std::vector<float> const one{value};
-        std::map<std::string, safetensors_source> sources;
-        for (auto const& tensor : tensors) {
-            sources[tensor] = {{1}, one};
-        }
-        write_safetensors((path / name).string(), sources);
-    }
-    float value_of(std::string const& variant = {}) const {
-        return find_weights(path, "model", variant).at("a").read<float>().at(0);
-    }
-    std::string refusal(std::string const& variant = {}) const {
-        try {
-            find_weights(path, "model", variant);
-        } catch (file_error const& error) {
-            return error.what();
-        }
-        return "none";
-    }
-};
-
-} // namespace
-
 TEST_SUITE("reference/weight_files") {
+    namespace {
+
+    /// A folder of weights.
+    struct weight_folder {
+        temporary_file file{"weights"};
+        std::filesystem::path path = file.path();
+
+        weight_folder() { std::filesystem::create_directories(path); }
+
+        void write(std::string const& name, std::string const& text) const { std::ofstream(path / name) << text; }
+        /// A file with some tensors, all of one element.
+        void write_tensors(std::string const& name, std::vector<std::string> const& tensors, float value = 1) const {
+            std::vector<float> const one{value};
+            std::map<std::string, safetensors_source> sources;
+            for (auto const& tensor : tensors) {
+                sources[tensor] = {{1}, one};
+            }
+            write_safetensors((path / name).string(), sources);
+        }
+        float value_of(std::string const& variant = {}) const {
+            return find_weights(path, "model", variant).at("a").read<float>().at(0);
+        }
+        std::string refusal(std::string const& variant = {}) const {
+            try {
+                find_weights(path, "model", variant);
+            } catch (file_error const& error) {
+                return error.what();
+            }
+            return "none";
+        }
+    };
+
+    } // namespace
+
     TEST_CASE("weights are found whole or in shards and in full precision before half") {
         weight_folder const folder;
         CHECK(folder.refusal() == folder.path.string() + ": there is no model.safetensors, expected one, or its .fp16 "
@@ -93,29 +93,29 @@ TEST_SUITE("reference/weight_files") {
     }
 
     TEST_CASE("an index that is none or points elsewhere is refused") {
-        for (auto const* map : {"null", "{}", "[\"a\"]", R"({"a": 1})", R"({"a": "../b"})", R"({"a": "/etc/b"})",
-                                R"({"a": ".."})", R"({"a": ""})", R"({"a": "c:b"})", R"({"a": "d\\b"})",
-                                R"({"a": "b\u0000c"})"}) {
+        for (auto const* map :
+             {"null", "{}", "[\"a\"]", R"({"a": 1})", R"({"a": "../b"})", R"({"a": "/etc/b"})", R"({"a": ".."})",
+              R"({"a": ""})", R"({"a": "c:b"})", R"({"a": "d\\b"})", R"({"a": "b\u0000c"})"}) {
             weight_folder const folder;
             folder.write_tensors("b", {"a"});
             folder.write("model.safetensors.index.json", std::string(R"({"weight_map": )") + map + "}");
             CAPTURE(map);
-            CHECK(folder.refusal().find("expected an object with the name of a file beside the index for each tensor") !=
-                  std::string::npos);
+            CHECK(
+                folder.refusal().find("expected an object with the name of a file beside the index for each tensor") !=
+                std::string::npos);
         }
     }
 
     TEST_CASE("a missing shard and tensors that a shard does not hold are named") {
         weight_folder const folder;
-        folder.write("model.safetensors.index.json",
-                     R"({"weight_map": {"a": "s1", "b": "s2", "c": "s2", "d": "s2"}})");
+        folder.write("model.safetensors.index.json", R"({"weight_map": {"a": "s1", "b": "s2", "c": "s2", "d": "s2"}})");
         folder.write_tensors("s1", {"a"});
         auto const index = (folder.path / "model.safetensors.index.json").string();
         CHECK(folder.refusal() ==
               index + ": shard s2 of 3 tensors is not beside it, expected all files of its weight_map");
         folder.write_tensors("s2", {"b"});
-        CHECK(folder.refusal() == (folder.path / "s2").string() +
-                                      ": 2 tensors are missing that the index has here: c, d, expected all 3");
+        CHECK(folder.refusal() ==
+              (folder.path / "s2").string() + ": 2 tensors are missing that the index has here: c, d, expected all 3");
         folder.write_tensors("s2", {"a", "b", "c", "d"});
         CHECK(folder.refusal() == (folder.path / "s2").string() + ": tensor a is in " + (folder.path / "s1").string() +
                                       " too, expected each tensor once");

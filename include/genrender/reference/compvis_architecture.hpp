@@ -87,11 +87,11 @@ inline unet_config infer_unet_config(tensor_places const& places, std::string co
     }
     auto const attention = std::string("mid_block.attentions.0.");
     auto const block = [&](std::size_t i) { return attention + "transformer_blocks." + std::to_string(i); };
-    config.transformer_layers_per_block = std::max<std::size_t>(
-        1, shapes.count([&](std::size_t i) { return block(i) + ".attn2.to_k.weight"; }));
+    config.transformer_layers_per_block =
+        std::max<std::size_t>(1, shapes.count([&](std::size_t i) { return block(i) + ".attn2.to_k.weight"; }));
     config.cross_attention_dim = shapes.extent(block(0) + ".attn2.to_k.weight", 1);
-    config.use_linear_projection = places.contains(attention + "proj_in.weight") &&
-                                   places.at(attention + "proj_in.weight").shape.size() == 2;
+    config.use_linear_projection =
+        places.contains(attention + "proj_in.weight") && places.at(attention + "proj_in.weight").shape.size() == 2;
     config.attention_head_dim.clear();
     for (auto const channels : config.block_out_channels) {
         auto const is_first_family = config.cross_attention_dim == 768;

@@ -81,7 +81,7 @@ inline bool take_prefix(std::string_view& name, std::string_view prefix) {
 }
 
 inline constexpr name_rule resnet_rules[] = {
-    {"in_layers.0.", "norm1."},  {"in_layers.2.", "conv1."},           {"out_layers.0.", "norm2."},
+    {"in_layers.0.", "norm1."},  {"in_layers.2.", "conv1."},          {"out_layers.0.", "norm2."},
     {"out_layers.3.", "conv2."}, {"emb_layers.1.", "time_emb_proj."}, {"skip_connection.", "conv_shortcut."}};
 
 inline constexpr name_rule attention_rules[] = {{"norm.", "norm."},

@@ -7,6 +7,7 @@
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/diffusers_config.hpp>
 #include <genrender/reference/diffusers_folder.hpp>
+#include <genrender/reference/lora_file.hpp>
 #include <genrender/reference/model_part.hpp>
 #include <genrender/reference/single_file.hpp>
 #include <genrender/reference/unet_config.hpp>
@@ -17,6 +18,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace genrender::reference {
 
@@ -28,6 +30,15 @@ struct pipeline_choice {
 
 /// The networks of a pipeline, each in a folder of diffusers' layout or in a single file.
 class pipeline_files {
+    // Stands first because its type follows from its body.
+    template <class Ask>
+    auto with_holder(model_part part, Ask const& ask) const {
+        if (part == model_part::controlnet) {
+            return control_file_ ? ask(*control_file_) : has_control_folder_ ? ask(folder_) : ask(*file_);
+        }
+        return file_ ? ask(*file_) : ask(folder_);
+    }
+
 public:
     /// Reads the headers of single files and no file of folders yet. `controlnet` is by default what `pipeline` holds.
     /// Throws file_error as single_file does, or if there is nothing at a path.
@@ -53,19 +64,26 @@ public:
         return with_holder(part, [&](auto const& holder) { return holder.options(part); });
     }
     /// What scheduler_config.json says, or would say. Throws file_error as single_file does, or if it cannot be read.
-    config_file scheduler_options() const {
-        return file_ ? file_->scheduler_options() : folder_.scheduler_options();
-    }
+    config_file scheduler_options() const { return file_ ? file_->scheduler_options() : folder_.scheduler_options(); }
     /// The architecture of UNet and ControlNet. Throws as read_diffusers_config does.
     unet_config config() const {
         auto unet = options(model_part::unet);
         auto controlnet = options(model_part::controlnet);
         return read_diffusers_config(std::move(unet), std::move(controlnet), scheduler_options());
     }
-    /// A network's tensors, to build it of. Throws file_error if there are none.
+    /// Merges a LoRA, `scale` times, into the UNet and the text encoder that are built from now on. Throws file_error as
+    /// lora_file does.
+    void add_lora(std::filesystem::path const& path, double scale = 1) { loras_.emplace_back(lora_file(path), scale); }
+
+    /// A network's tensors, to build it of, with all LoRAs. Throws file_error if there are none, or as
+    /// weights::add_lora does.
     template <std::floating_point Real>
     weights<Real> tensors(model_part part) const {
-        return with_holder(part, [&](auto const& holder) { return holder.template tensors<Real>(part); });
+        auto source = with_holder(part, [&](auto const& holder) { return holder.template tensors<Real>(part); });
+        for (auto const& [lora, scale] : loras_) {
+            source.add_lora(lora, part, scale);
+        }
+        return source;
     }
     /// The folder, unless the pipeline is a single file.
     diffusers_folder const* folder() const { return file_ ? nullptr : &folder_; }
@@ -78,18 +96,11 @@ private:
         return path;
     }
 
-    template <class Ask>
-    auto with_holder(model_part part, Ask const& ask) const {
-        if (part == model_part::controlnet) {
-            return control_file_ ? ask(*control_file_) : has_control_folder_ ? ask(folder_) : ask(*file_);
-        }
-        return file_ ? ask(*file_) : ask(folder_);
-    }
-
     diffusers_folder folder_;
     bool has_control_folder_ = false;
     std::optional<single_file> file_;
     std::optional<single_file> control_file_;
+    std::vector<std::pair<lora_file, double>> loras_;
 };
 
 } // namespace genrender::reference

@@ -120,7 +120,8 @@ public:
     template <std::floating_point Real>
     std::vector<Real> read(std::string const& name, std::size_t first, std::size_t count) const {
         auto const& entry = this->entry(name);
-        auto const is_number = entry.dtype == "F64" || entry.dtype == "F32" || entry.dtype == "F16" || entry.dtype == "BF16";
+        auto const is_number =
+            entry.dtype == "F64" || entry.dtype == "F32" || entry.dtype == "F16" || entry.dtype == "BF16";
         require(is_number, "tensor " + name + " has dtype " + entry.dtype, "F64, F32, F16 or BF16");
         auto const width = *internal::element_bytes(entry.dtype);
         auto const stored = (entry.end - entry.begin) / width;

@@ -128,8 +128,9 @@ public:
     config_file scheduler_options() const {
         auto config = infer_unet_config(places(model_part::unet), path_);
         if (!prediction_type_ && config.cross_attention_dim != 768) {
-            throw file_error(path_ + ": what this UNet of Stable Diffusion 2.x predicts is not in the file, expected to "
-                                     "be told: epsilon (512-base) or velocity (768-v)");
+            throw file_error(path_ +
+                             ": what this UNet of Stable Diffusion 2.x predicts is not in the file, expected to "
+                             "be told: epsilon (512-base) or velocity (768-v)");
         }
         config.prediction_type = prediction_type_.value_or(prediction::epsilon);
         return {path_, scheduler_json(config)};

@@ -5,6 +5,8 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
+#include <genrender/reference/lora_merge.hpp>
 #include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
 #include <genrender/reference/tensor_place.hpp>
@@ -58,6 +60,18 @@ public:
         return result;
     }
 
+    /// Adds what a LoRA changes in this network, `scale` times, to the tensors that are taken from now on; several LoRAs
+    /// add up. Throws value_error if tensors are random or the scale is not finite, file_error as differences_of does.
+    void add_lora(lora_file const& lora, model_part part, double scale = 1) {
+        require_value(is_of_files(), "weights", "tensors", "random", "of files, where a LoRA is to be merged");
+        require_value(is_finite(scale), "weights", "scale", scale, "a finite number");
+        auto const found = differences_of(lora, part, places_);
+        for (auto [name, difference] : found) {
+            difference.factor *= scale;
+            differences_.emplace(name, std::move(difference));
+        }
+    }
+
     /// The elements of tensor `name`, row-major. Throws file_error `path: there is no tensor ...` or `path: tensor ...
     /// is [..], expected [..]`.
     std::vector<Real> take(std::string const& name, std::vector<std::size_t> const& shape) {
@@ -68,7 +82,7 @@ public:
                 throw file_error(place.file->path() + ": tensor " + name + " is " + extents_text(place.shape) +
                                  ", expected " + extents_text(shape));
             }
-            return place.template read<Real>();
+            return read<Real>(name, place);
         }
         auto const values = seeded_tensor(seed_, network_, name, shape);
         return {values.begin(), values.end()};
@@ -104,8 +118,8 @@ public:
     std::map<std::string, std::vector<float>> values() const {
         std::map<std::string, std::vector<float>> result;
         for (auto const& [name, shape] : taken_) {
-            result[name] = is_of_files() ? place_of(name, shape).template read<float>()
-                                          : seeded_tensor(seed_, network_, name, shape);
+            result[name] =
+                is_of_files() ? read<float>(name, place_of(name, shape)) : seeded_tensor(seed_, network_, name, shape);
         }
         return result;
     }
@@ -132,9 +146,20 @@ private:
         return found->second;
     }
 
+    template <class Number>
+    std::vector<Number> read(std::string const& name, tensor_place const& place) const {
+        auto values = place.template read<Number>();
+        auto const [first, last] = differences_.equal_range(name);
+        for (auto it = first; it != last; ++it) {
+            add_difference<Number>(values, it->second);
+        }
+        return values;
+    }
+
     bool is_of_files() const { return !path_.empty(); }
 
     tensor_places places_;
+    lora_differences differences_;
     std::string path_; // none if tensors are random
     std::uint64_t seed_ = 0;
     std::string network_;
