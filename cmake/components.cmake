@@ -235,6 +235,7 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/model_part.hpp
     reference/network_conditioning.hpp
     reference/padded_map.hpp
+    reference/panel_source.hpp
     reference/pickles.hpp
     reference/pipeline_files.hpp
     reference/prompt_vocabulary.hpp

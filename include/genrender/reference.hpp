@@ -26,6 +26,7 @@
 #include <genrender/reference/model_part.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/padded_map.hpp>
+#include <genrender/reference/panel_source.hpp>
 #include <genrender/reference/pickles.hpp>
 #include <genrender/reference/pipeline_files.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>

@@ -80,7 +80,7 @@ public:
     /// `sites`. Throws value_error if the config cannot be built, file_error if a tensor is missing, misshapen or left
     /// over.
     unet(unet_config const& config, weights<Real>& source, site_list& sites)
-        : encoder_((require_config(config), config), source, sites),
+        : encoder_((require_config(config), require_all_tensors(config, source), config), source, sites),
           conv_norm_out_(source, "conv_norm_out", config.block_out_channels.front(), config.norm_num_groups,
                          Real(1e-5)),
           conv_out_(source, "conv_out", config.block_out_channels.front(), config.out_channels) {
@@ -132,6 +132,13 @@ public:
     }
 
 private:
+    static void require_all_tensors(unet_config const& config, weights<Real> const& source) {
+        require_tensors(source, [&](weights<Real>& listing) {
+            site_list sites({0, 0});
+            unet const network(config, listing, sites);
+        });
+    }
+
     static void add(forward_pass<Real> const& pass, feature_maps<Real>& to, feature_maps<Real> const& from) {
         pass.each_frame([&](std::size_t i) { add_scaled(to[i], from[i]); });
     }

@@ -60,6 +60,58 @@ public:
         return result;
     }
 
+    /// A store of nothing, which remembers what is asked for: whatever is taken is empty. A network can be built of it, in
+    /// no time and memory, to learn its tensors' names and shapes, but not run. The error for more than `most` tensors
+    /// blames `path`.
+    static weights listing(std::size_t most, std::string path) {
+        weights result;
+        result.most_ = most;
+        result.path_ = std::move(path);
+        return result;
+    }
+    /// Whether whatever is taken is empty.
+    bool is_listing() const { return most_ > 0; }
+
+    /// Throws file_error unless the tensors of the files are those that a listing was asked for, naming all that are
+    /// missing, have another shape, or have no place. Nothing can be wrong with random tensors.
+    void require_those_of(weights const& listing) const {
+        if (!is_of_files()) {
+            return;
+        }
+        counted_names missing, misshapen, surplus;
+        for (auto const& [name, shape] : listing.taken_) {
+            auto const found = places_.find(name);
+            if (found == places_.end()) {
+                missing.add(name + " " + extents_text(shape));
+            } else if (found->second.shape != shape) {
+                misshapen.add(name + " is " + extents_text(found->second.shape) + " where " + extents_text(shape) +
+                              " is asked for");
+            }
+        }
+        for (auto const& [name, place] : places_) {
+            if (!listing.taken_.contains(name)) {
+                surplus.add(name);
+            }
+        }
+        std::string sentence;
+        auto const tell = [&](counted_names const& names, char const* what) {
+            if (names.count() > 0) {
+                sentence += (sentence.empty() ? "" : "; ") + std::to_string(names.count()) + what + names.text();
+            }
+        };
+        tell(missing, " tensors are missing: ");
+        tell(misshapen, " tensors have another shape: ");
+        tell(surplus, " tensors have no place in the network: ");
+        if (!sentence.empty()) {
+            throw file_error(path_ + ": " + sentence + ", expected none");
+        }
+    }
+
+    /// How many tensors the files hold; 0 if they are random.
+    std::size_t stored_count() const { return places_.size(); }
+    /// The file or folder to blame; empty if tensors are random.
+    std::string const& path() const { return path_; }
+
     /// Adds what a LoRA changes in this network, `scale` times, to the tensors that are taken from now on; several LoRAs
     /// add up. Throws value_error if tensors are random or the scale is not finite, file_error as differences_of does.
     void add_lora(lora_file const& lora, model_part part, double scale = 1) {
@@ -76,6 +128,13 @@ public:
     /// is [..], expected [..]`.
     std::vector<Real> take(std::string const& name, std::vector<std::size_t> const& shape) {
         taken_.insert_or_assign(name, shape);
+        if (is_listing()) {
+            if (taken_.size() > most_) {
+                throw file_error(path_ + ": the config asks for more than " + std::to_string(most_) +
+                                 " tensors, expected about as many as there are");
+            }
+            return {};
+        }
         if (is_of_files()) {
             auto const& place = place_of(name, shape);
             if (place.shape != shape) {
@@ -156,15 +215,29 @@ private:
         return values;
     }
 
-    bool is_of_files() const { return !path_.empty(); }
+    bool is_of_files() const { return !path_.empty() && !is_listing(); }
 
     tensor_places places_;
     lora_differences differences_;
-    std::string path_; // none if tensors are random
+    std::string path_;     // none if tensors are random
+    std::size_t most_ = 0; // above 0 if nothing is stored
     std::uint64_t seed_ = 0;
     std::string network_;
     std::map<std::string, std::vector<std::size_t>> taken_;
 };
+
+/// Throws file_error, naming all that is wrong at once, unless the tensors of `source` are those of a network, which
+/// `build(listing)` builds of a store of nothing.
+template <std::floating_point Real, class Build>
+void require_tensors(weights<Real> const& source, Build const& build) {
+    if (source.stored_count() == 0) {
+        return;
+    }
+    // A config can ask for anything; what is listed stays of the order of what is stored.
+    auto listing = weights<Real>::listing(2 * source.stored_count() + 1000, source.path());
+    build(listing);
+    source.require_those_of(listing);
+}
 
 } // namespace genrender::reference
 
