@@ -75,6 +75,43 @@ TEST_SUITE("reference/diffusers_folder") {
         CHECK_NOTHROW(unet<float>(files.config(), source, sites));
     }
 
+    TEST_CASE("folders of other architectures are refused by name") {
+        test_folder const folder;
+        auto const& golden = golden_cases()[1];
+        write_golden_folder(folder.path, golden, golden_configs()[1]);
+        diffusers_folder const files(folder.path);
+        CHECK_NOTHROW(files.config());
+        auto const says = [&](std::string const& what) {
+            std::string text = "none";
+            try {
+                files.config();
+            } catch (file_error const& error) {
+                text = error.what();
+            }
+            CAPTURE(text);
+            CHECK(text.find(what) != std::string::npos);
+        };
+        auto const with = [&](char const* option, nlohmann::json const& value) {
+            auto json = nlohmann::json::parse(golden.unet_json);
+            json[option] = value;
+            folder.write("unet/config.json", json.dump());
+        };
+        with("in_channels", 9);
+        says("option in_channels is 9, expected 4 (this is for inpainting)");
+        with("time_cond_proj_dim", 256);
+        says("option time_cond_proj_dim is 256, expected null (this is a latent consistency model, LCM)");
+        with("addition_embed_type", "text_time");
+        says("expected null (Stable Diffusion 1.x or 2.x; this is Stable Diffusion XL)");
+        folder.write("unet/config.json", golden.unet_json);
+        folder.write("model_index.json", R"({"_class_name": "StableDiffusionPipeline"})");
+        CHECK_NOTHROW(files.config());
+        folder.write("model_index.json", R"({"_class_name": "StableDiffusionXLPipeline"})");
+        says("option _class_name is \"StableDiffusionXLPipeline\", expected a pipeline of Stable Diffusion 1.x or 2.x "
+             "(this is Stable Diffusion XL)");
+        folder.write("model_index.json", R"({"_class_name": "StableDiffusionInpaintPipeline"})");
+        says("(this is a model for inpainting)");
+    }
+
     TEST_CASE("a config that asks for more layers than can be is refused before they are made") {
         test_folder const folder;
         auto const& golden = golden_cases()[2];

@@ -73,6 +73,12 @@ inline void read_encoder_options(unet_config& config, config_file& file) {
 /// Takes the options of the UNet's config.json.
 inline void read_unet_options(unet_config& config, config_file& file) {
     file.expect("_class_name", {"UNet2DConditionModel"});
+    // What is published under the same class and is another architecture.
+    file.require(file["addition_embed_type"] != "text_time", "addition_embed_type",
+                 "null (Stable Diffusion 1.x or 2.x; this is Stable Diffusion XL)");
+    file.require(file["time_cond_proj_dim"].is_null(), "time_cond_proj_dim",
+                 "null (this is a latent consistency model, LCM)");
+    file.require(file["in_channels"] != 9 || file["out_channels"] == 9, "in_channels", "4 (this is for inpainting)");
     read_encoder_options(config, file);
     config.out_channels = file.count("out_channels", 4);
     file.require(config.in_channels == config.out_channels, "in_channels",

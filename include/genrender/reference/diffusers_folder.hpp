@@ -67,6 +67,27 @@ inline tensor_places with_attention_names(tensor_places const& places) {
     return result;
 }
 
+/// Throws file_error if a folder's model_index.json, where it has one, says that it is of another architecture.
+inline void refuse_foreign_pipeline(std::filesystem::path const& folder) {
+    static constexpr std::array<std::array<char const*, 2>, 7> foreign{
+        {{"StableDiffusionXL", "Stable Diffusion XL"},
+         {"StableDiffusion3", "Stable Diffusion 3"},
+         {"Flux", "Flux"},
+         {"Inpaint", "a model for inpainting"},
+         {"LatentConsistency", "an LCM"},
+         {"InstructPix2Pix", "a model for editing"},
+         {"Depth2Img", "told depth beside the latents"}}};
+    if (!std::filesystem::exists(folder / "model_index.json")) {
+        return;
+    }
+    config_file const index(folder / "model_index.json");
+    auto const& name = index["_class_name"];
+    for (auto const& [part, what] : foreign) {
+        index.require(!name.is_string() || name.get<std::string>().find(part) == std::string::npos, "_class_name",
+                      std::string("a pipeline of Stable Diffusion 1.x or 2.x (this is ") + what + ")");
+    }
+}
+
 } // namespace internal
 
 /// The parts of a folder:
@@ -95,8 +116,12 @@ public:
     config_file options(model_part part) const { return config_file(place_of(part) / "config.json"); }
     /// The scheduler_config.json. Throws file_error if it cannot be read.
     config_file scheduler_options() const { return config_file(folder_ / "scheduler" / "scheduler_config.json"); }
-    /// The architecture. Throws as read_diffusers_config does.
+    /// Throws file_error by name if model_index.json, where there is one, says that the folder is of an architecture
+    /// other than Stable Diffusion 1.x and 2.x.
+    void refuse_foreign() const { internal::refuse_foreign_pipeline(folder_); }
+    /// The architecture. Throws as read_diffusers_config and refuse_foreign do.
     unet_config config() const {
+        refuse_foreign();
         auto unet = options(model_part::unet);
         auto controlnet = options(model_part::controlnet);
         return read_diffusers_config(std::move(unet), std::move(controlnet), scheduler_options());

@@ -65,8 +65,11 @@ public:
     }
     /// What scheduler_config.json says, or would say. Throws file_error as single_file does, or if it cannot be read.
     config_file scheduler_options() const { return file_ ? file_->scheduler_options() : folder_.scheduler_options(); }
-    /// The architecture of UNet and ControlNet. Throws as read_diffusers_config does.
+    /// The architecture of UNet and ControlNet. Throws as diffusers_folder::config does.
     unet_config config() const {
+        if (!file_) {
+            folder_.refuse_foreign();
+        }
         auto unet = options(model_part::unet);
         auto controlnet = options(model_part::controlnet);
         return read_diffusers_config(std::move(unet), std::move(controlnet), scheduler_options());
