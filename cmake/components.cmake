@@ -227,6 +227,8 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/clip_tokenizer.hpp
     reference/clip_tokenizer_folder.hpp
     reference/clip_words.hpp
+    reference/compvis_architecture.hpp
+    reference/compvis_names.hpp
     reference/config_file.hpp
     reference/controlnet.hpp
     reference/conv2d.hpp
@@ -243,9 +245,15 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/layer_norm.hpp
     reference/layer_norm.inl
     reference/linear.hpp
+    reference/lora_file.hpp
+    reference/lora_merge.hpp
     reference/map_stripes.hpp
+    reference/model_part.hpp
     reference/network_conditioning.hpp
     reference/padded_map.hpp
+    reference/panel_source.hpp
+    reference/pickles.hpp
+    reference/pipeline_files.hpp
     reference/prompt_vocabulary.hpp
     reference/reference_embedder.hpp
     reference/reference_network.hpp
@@ -254,9 +262,12 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/resnet_block.hpp
     reference/safetensors.hpp
     reference/seeded_tensor.hpp
+    reference/single_file.hpp
     reference/site_list.hpp
     reference/spare_map.hpp
     reference/spatial_transformer.hpp
+    reference/stable_diffusion.hpp
+    reference/tensor_place.hpp
     reference/time_embedding.hpp
     reference/transformer_block.hpp
     reference/unet.hpp
@@ -269,6 +280,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/vae_mid_block.hpp
     reference/vae_resampler.hpp
     reference/vae_resnet.hpp
+    reference/weight_files.hpp
     reference/weight_panels.hpp
     reference/weight_panels.inl
     reference/weights.hpp)

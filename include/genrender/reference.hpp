@@ -17,6 +17,8 @@
 #include <genrender/reference/clip_tokenizer.hpp>
 #include <genrender/reference/clip_tokenizer_folder.hpp>
 #include <genrender/reference/clip_words.hpp>
+#include <genrender/reference/compvis_architecture.hpp>
+#include <genrender/reference/compvis_names.hpp>
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/controlnet.hpp>
 #include <genrender/reference/conv2d.hpp>
@@ -31,9 +33,15 @@
 #include <genrender/reference/haar.hpp>
 #include <genrender/reference/layer_norm.hpp>
 #include <genrender/reference/linear.hpp>
+#include <genrender/reference/lora_file.hpp>
+#include <genrender/reference/lora_merge.hpp>
 #include <genrender/reference/map_stripes.hpp>
+#include <genrender/reference/model_part.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/padded_map.hpp>
+#include <genrender/reference/panel_source.hpp>
+#include <genrender/reference/pickles.hpp>
+#include <genrender/reference/pipeline_files.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
 #include <genrender/reference/reference_embedder.hpp>
 #include <genrender/reference/reference_network.hpp>
@@ -42,9 +50,12 @@
 #include <genrender/reference/resnet_block.hpp>
 #include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
+#include <genrender/reference/single_file.hpp>
 #include <genrender/reference/site_list.hpp>
 #include <genrender/reference/spare_map.hpp>
 #include <genrender/reference/spatial_transformer.hpp>
+#include <genrender/reference/stable_diffusion.hpp>
+#include <genrender/reference/tensor_place.hpp>
 #include <genrender/reference/time_embedding.hpp>
 #include <genrender/reference/transformer_block.hpp>
 #include <genrender/reference/unet.hpp>
@@ -57,5 +68,6 @@
 #include <genrender/reference/vae_mid_block.hpp>
 #include <genrender/reference/vae_resampler.hpp>
 #include <genrender/reference/vae_resnet.hpp>
+#include <genrender/reference/weight_files.hpp>
 #include <genrender/reference/weight_panels.hpp>
 #include <genrender/reference/weights.hpp>

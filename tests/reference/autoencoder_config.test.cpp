@@ -28,7 +28,7 @@ TEST_SUITE("reference/autoencoder_config") {
 
     autoencoder_config read_vae(std::string const& text, std::string const& path) {
         std::ofstream(path) << text;
-        return read_autoencoder_config(path);
+        return read_autoencoder_config(config_file(path));
     }
 
     TEST_CASE("the file of Stable Diffusion 1.5 is the default") {

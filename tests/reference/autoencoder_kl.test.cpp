@@ -34,7 +34,7 @@ TEST_SUITE("reference/autoencoder_kl") {
     vae_model model_of(nlohmann::json const& golden) {
         temporary_file const file("config.json");
         std::ofstream(file.path()) << golden.at("config");
-        vae_model model{read_autoencoder_config(file.path()), {}, {}};
+        vae_model model{read_autoencoder_config(config_file(file.path())), {}, {}};
         auto shapes = weights<float>::seeded(1, "");
         autoencoder_kl<float> const network(model.config, shapes);
         model.values = golden_tensors(shapes.taken(), golden.at("name").get<std::string>() + ".");

@@ -28,7 +28,7 @@ TEST_SUITE("reference/clip_text_config") {
 
     clip_text_config read_text(std::string const& text, std::string const& path) {
         std::ofstream(path) << text;
-        return read_clip_text_config(path);
+        return read_clip_text_config(config_file(path));
     }
 
     TEST_CASE("the file of Stable Diffusion 1.5 is the default") {

@@ -37,7 +37,7 @@ TEST_SUITE("reference/clip_text_encoder") {
     text_model model_of(nlohmann::json const& golden, std::string const& prefix) {
         temporary_file const file("config.json");
         std::ofstream(file.path()) << golden.at("config");
-        text_model model{read_clip_text_config(file.path()), {}, {}};
+        text_model model{read_clip_text_config(config_file(file.path())), {}, {}};
         auto shapes = weights<float>::seeded(1, "");
         clip_text_encoder<float> const network(model.config, shapes);
         std::map<std::string, std::vector<std::size_t>> bare;

@@ -141,7 +141,9 @@ TEST_SUITE("reference/diffusers_config") {
             CHECK_THROWS_WITH_AS(files.read(), text.c_str(), file_error);
         };
         check("unet", "_class_name", "UNet3DConditionModel", "\"UNet2DConditionModel\"");
-        check("unet", "in_channels", 9, "the 4 of out_channels (the network sees latents alone)");
+        check("unet", "in_channels", 9, "4 (this is for inpainting)");
+        check("unet", "in_channels", 8, "the 4 of out_channels (the network sees latents alone)");
+        check("unet", "time_cond_proj_dim", 256, "null (this is a latent consistency model, LCM)");
         check("unet", "down_block_types", {"DownBlock2D"}, "4 names");
         check("unet", "down_block_types", {"DownBlock2D", "AttnDownBlock2D", "DownBlock2D", "DownBlock2D"},
               "CrossAttnDownBlock2D or DownBlock2D for each level");
@@ -157,7 +159,9 @@ TEST_SUITE("reference/diffusers_config") {
         check("unet", "act_fn", "gelu", "\"silu\" or \"swish\"");
         check("unet", "only_cross_attention", true, "false or [false,false,false,false]");
         check("unet", "time_embedding_dim", 100, "null or 64");
-        check("unet", "addition_embed_type", "text_time", "null");
+        check("unet", "addition_embed_type", "text_time",
+              "null (Stable Diffusion 1.x or 2.x; this is Stable Diffusion XL)");
+        check("unet", "addition_embed_type", "text", "null");
         check("unet", "reverse_transformer_layers_per_block", {1, 1, 1, 1}, "null");
         check("unet", "conv_in_kernel", 1, "3");
         auto const unet = [](config_folder const& files) { return ", as in " + files.path("unet.json"); };

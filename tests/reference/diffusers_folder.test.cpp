@@ -45,41 +45,6 @@ struct test_folder {
 } // namespace
 
 TEST_SUITE("reference/diffusers_folder") {
-    TEST_CASE("weights are found whole or in shards and in full precision before half") {
-        test_folder const folder;
-        auto const names = [&] {
-            std::vector<std::string> found;
-            for (auto const& path : safetensors_paths(folder.path, "model")) {
-                found.push_back(std::filesystem::path(path).filename().string());
-            }
-            return found;
-        };
-        CHECK_THROWS_WITH_AS(names(),
-                             (folder.path.string() + ": there is no model.safetensors, expected one, or its .fp16, or "
-                                                     "an index of shards")
-                                 .c_str(),
-                             file_error);
-        folder.write("model.safetensors.index.fp16.json", R"({"weight_map": {"a": "h1", "b": "h2", "c": "h1"}})");
-        CHECK(names() == std::vector<std::string>{"h1", "h2"});
-        folder.touch("model.fp16.safetensors");
-        CHECK(names() == std::vector<std::string>{"model.fp16.safetensors"});
-        folder.write("model.safetensors.index.json",
-                     R"({"metadata": {"total_size": 9}, "weight_map": {"a": "m-1", "b": "m-2"}})");
-        CHECK(names() == std::vector<std::string>{"m-1", "m-2"});
-        folder.touch("model.safetensors");
-        CHECK(names() == std::vector<std::string>{"model.safetensors"});
-    }
-
-    TEST_CASE("an index that is none or points elsewhere is refused") {
-        for (auto const* map : {"null", "{}", "[\"a\"]", R"({"a": 1})", R"({"a": "../b"})", R"({"a": "/etc/b"})",
-                                R"({"a": ".."})", R"({"a": ""})", R"({"a": "c:b"})", R"({"a": "d\\b"})"}) {
-            test_folder const folder;
-            folder.write("model.safetensors.index.json", std::string(R"({"weight_map": )") + map + "}");
-            CAPTURE(map);
-            CHECK_THROWS_AS(safetensors_paths(folder.path, "model"), file_error);
-        }
-    }
-
     TEST_CASE("shards are loaded as one network") {
         test_folder const folder;
         auto const& golden = golden_cases()[2];
@@ -108,6 +73,94 @@ TEST_SUITE("reference/diffusers_folder") {
         auto source = files.unet<float>();
         site_list sites({8, 8});
         CHECK_NOTHROW(unet<float>(files.config(), source, sites));
+    }
+
+    TEST_CASE("folders of other architectures are refused by name") {
+        test_folder const folder;
+        auto const& golden = golden_cases()[1];
+        write_golden_folder(folder.path, golden, golden_configs()[1]);
+        diffusers_folder const files(folder.path);
+        CHECK_NOTHROW(files.config());
+        auto const says = [&](std::string const& what) {
+            std::string text = "none";
+            try {
+                files.config();
+            } catch (file_error const& error) {
+                text = error.what();
+            }
+            CAPTURE(text);
+            CHECK(text.find(what) != std::string::npos);
+        };
+        auto const with = [&](char const* option, nlohmann::json const& value) {
+            auto json = nlohmann::json::parse(golden.unet_json);
+            json[option] = value;
+            folder.write("unet/config.json", json.dump());
+        };
+        with("in_channels", 9);
+        says("option in_channels is 9, expected 4 (this is for inpainting)");
+        with("time_cond_proj_dim", 256);
+        says("option time_cond_proj_dim is 256, expected null (this is a latent consistency model, LCM)");
+        with("addition_embed_type", "text_time");
+        says("expected null (Stable Diffusion 1.x or 2.x; this is Stable Diffusion XL)");
+        folder.write("unet/config.json", golden.unet_json);
+        folder.write("model_index.json", R"({"_class_name": "StableDiffusionPipeline"})");
+        CHECK_NOTHROW(files.config());
+        folder.write("model_index.json", R"({"_class_name": "StableDiffusionXLPipeline"})");
+        says("option _class_name is \"StableDiffusionXLPipeline\", expected a pipeline of Stable Diffusion 1.x or 2.x "
+             "(this is Stable Diffusion XL)");
+        folder.write("model_index.json", R"({"_class_name": "StableDiffusionInpaintPipeline"})");
+        says("(this is a model for inpainting)");
+    }
+
+    TEST_CASE("a config that asks for more layers than can be is refused before they are made") {
+        test_folder const folder;
+        auto const& golden = golden_cases()[2];
+        write_golden_folder(folder.path, golden, golden_configs()[2]);
+        for (auto const* network : {"unet", "controlnet"}) {
+            auto json =
+                nlohmann::json::parse(std::string(network) == "unet" ? golden.unet_json : golden.controlnet_json);
+            json["transformer_layers_per_block"] = 1000000;
+            folder.write(std::string(network) + "/config.json", json.dump());
+        }
+        diffusers_folder const files(folder.path);
+        auto source = files.unet<float>();
+        auto const most = std::to_string(2 * source.stored_count() + 1000);
+        site_list sites({8, 8});
+        CHECK_THROWS_WITH_AS(unet<float>(files.config(), source, sites),
+                             ((folder.path / "unet").string() + ": the config asks for more than " + most +
+                              " tensors, expected about as many as there are")
+                                 .c_str(),
+                             file_error);
+    }
+
+    TEST_CASE("a VAE's attention is found under older names and a text encoder's tensors without their beginning") {
+        test_folder const folder;
+        std::filesystem::create_directories(folder.path / "vae");
+        std::vector<float> const four{1, 2, 3, 4};
+        auto const at = std::string("encoder.mid_block.attentions.0.");
+        write_safetensors((folder.path / "vae" / "diffusion_pytorch_model.safetensors").string(),
+                          {{at + "query.weight", {{2, 2, 1, 1}, four}},
+                           {at + "proj_attn.weight", {{2, 2}, four}},
+                           {at + "to_v.weight", {{2, 2}, four}},
+                           {"quant_conv.weight", {{2, 2, 1, 1}, four}}});
+        diffusers_folder const files(folder.path);
+        auto const vae = files.places(model_part::vae);
+        CHECK(vae.size() == 4);
+        CHECK(vae.at(at + "to_q.weight").shape == std::vector<std::size_t>{2, 2});
+        CHECK(vae.at(at + "to_q.weight").read<float>() == four);
+        CHECK(vae.contains(at + "to_out.0.weight"));
+        CHECK(vae.contains(at + "to_v.weight"));
+        CHECK(vae.at("quant_conv.weight").shape.size() == 4);
+        for (std::string const head : {"", "text_model."}) {
+            write_safetensors((folder.path / "text_encoder" / "model.safetensors").string(),
+                              {{head + "embeddings.token_embedding.weight", {{2, 2}, four}},
+                               {head + "embeddings.position_ids", {{1, 4}, four}},
+                               {head + "final_layer_norm.bias", {{4}, four}}});
+            auto const text = files.places(model_part::text_encoder);
+            CHECK(text.size() == 2);
+            CHECK(text.contains("text_model.embeddings.token_embedding.weight"));
+            CHECK(text.contains("text_model.final_layer_norm.bias"));
+        }
     }
 
     TEST_CASE_TEMPLATE("the words of a folder replace the default ones", Real, float, double) {
@@ -170,10 +223,14 @@ TEST_SUITE("reference/diffusers_folder") {
         diffusers_folder const files(folder.path);
         auto source = files.unet<float>();
         site_list sites({8, 8});
-        CHECK_THROWS_WITH_AS(unet<float>(files.config(), source, sites),
-                             ((folder.path / "unet" / "diffusion_pytorch_model.safetensors").string() +
-                              ": tensor conv_in.weight is [8, 4, 3, 3], expected [1000000, 4, 3, 3]")
-                                 .c_str(),
-                             file_error);
+        try {
+            unet<float> const network(files.config(), source, sites);
+            FAIL("it was built");
+        } catch (file_error const& error) {
+            std::string const text = error.what();
+            CHECK(text.starts_with((folder.path / "unet").string() + ": "));
+            CHECK(text.find("tensors have another shape: conv_in.bias is [8] where [1000000] is asked for, ") !=
+                  std::string::npos);
+        }
     }
 }

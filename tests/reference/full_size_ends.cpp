@@ -77,7 +77,7 @@ stack<float, 3> maps_of(safetensors_file const& file, std::string const& name) {
 bool run(std::string const& what, std::filesystem::path const& folder, any_loop const& loop, std::size_t stripe_bytes) {
     safetensors_file const data((folder / "ends.safetensors").string());
     if (what == "text") {
-        auto const config = read_clip_text_config(folder / "text_encoder" / "config.json");
+        auto const config = read_clip_text_config(config_file(folder / "text_encoder" / "config.json"));
         auto source = weights<float>::from_files(safetensors_paths(folder / "text_encoder", "model"));
         clip_text_encoder<float> const encoder(config, source);
         std::vector<std::uint32_t> ids;
@@ -87,7 +87,7 @@ bool run(std::string const& what, std::filesystem::path const& folder, any_loop 
         auto const rows = timed([&] { return encoder(ids, loop); });
         return compare(rows.data(), data.read<float>("text"), 1e-5f);
     }
-    auto const config = read_autoencoder_config(folder / "vae" / "config.json");
+    auto const config = read_autoencoder_config(config_file(folder / "vae" / "config.json"));
     auto source = weights<float>::from_files(safetensors_paths(folder / "vae", "diffusion_pytorch_model"));
     auto const is_encode = what == "encode";
     autoencoder_kl<float> const vae(config, source, is_encode ? autoencoder_parts::both : autoencoder_parts::decoder);

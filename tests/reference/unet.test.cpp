@@ -108,16 +108,33 @@ TEST_SUITE("reference/unet") {
         auto const to_q = std::string("up_blocks.1.attentions.1.transformer_blocks.0.attn1.to_q.weight");
         CHECK_NOTHROW(build([](auto&) {}));
         CHECK_THROWS_WITH_AS(build([&](auto& tensors) { tensors.erase(to_q); }),
-                             text("there is no tensor " + to_q + ", expected one of shape [8, 8]").c_str(), file_error);
-        CHECK_THROWS_WITH_AS(build([&](auto& tensors) {
-                                 tensors[to_q].shape = {4, 16};
-                             }),
-                             text("tensor " + to_q + " is [4, 16], expected [8, 8]").c_str(), file_error);
+                             text("1 tensors are missing: " + to_q + " [8, 8], expected none").c_str(), file_error);
+        CHECK_THROWS_WITH_AS(
+            build([&](auto& tensors) {
+                tensors[to_q].shape = {4, 16};
+            }),
+            text("1 tensors have another shape: " + to_q + " is [4, 16] where [8, 8] is asked for, expected none")
+                .c_str(),
+            file_error);
         std::vector<float> const one{1.0f};
         CHECK_THROWS_WITH_AS(build([&](auto& tensors) {
                                  tensors["add_embedding.bias"] = {{1}, one};
                              }),
                              text("1 tensors have no place in the network: add_embedding.bias, expected none").c_str(),
                              file_error);
+        // All at once.
+        CHECK_THROWS_WITH_AS(
+            build([&](auto& tensors) {
+                tensors.erase(to_q);
+                tensors["conv_in.bias"].shape = {2, 4};
+                for (auto const* name : {"a", "b", "c", "d", "e", "f"}) {
+                    tensors[name] = {{1}, one};
+                }
+            }),
+            text("1 tensors are missing: " + to_q +
+                 " [8, 8]; 1 tensors have another shape: conv_in.bias is [2, 4] where [8] is asked for; "
+                 "6 tensors have no place in the network: a, b, c, d, e, ..., expected none")
+                .c_str(),
+            file_error);
     }
 }

@@ -94,4 +94,39 @@ TEST_SUITE("reference/weights") {
             (second.path() + ": tensor a is in " + first.path() + " too, expected each tensor once").c_str(),
             file_error);
     }
+
+    TEST_CASE("a listing is asked for no more than it should be and gives nothing") {
+        auto listing = weights<float>::listing(2, "file");
+        CHECK(listing.is_listing());
+        CHECK(listing.take("a", {3, 1000000}).empty());
+        CHECK(listing.take("b", {1}).empty());
+        CHECK(listing.take("a", {3, 1000000}).empty());
+        CHECK_THROWS_WITH_AS(listing.take("c", {1}),
+                             "file: the config asks for more than 2 tensors, expected about as many as there are",
+                             file_error);
+        CHECK_NOTHROW(listing.require_all_taken());
+    }
+
+    TEST_CASE("all that is missing misshapen or left over is told at once and random tensors are as asked for") {
+        temporary_file const file("errors.safetensors");
+        std::vector<float> const one{1.0f};
+        write_safetensors(file.path(), {{"x.a", {{1}, one}}, {"x.b", {{1, 1}, one}}, {"y.c", {{1}, one}}});
+        auto const network = [](weights<float>& source) {
+            source.take("x.a", {1});
+            source.take("x.b", {1});
+            source.take("x.c", {1, 2});
+        };
+        CHECK_THROWS_WITH_AS(require_tensors(weights<float>::from_file(file.path()), network),
+                             (file.path() + ": 1 tensors are missing: x.c [1, 2]; 1 tensors have another shape: x.b is "
+                                            "[1, 1] where [1] is asked for; 1 tensors have no place in the network: "
+                                            "y.c, expected none")
+                                 .c_str(),
+                             file_error);
+        CHECK_NOTHROW(require_tensors(weights<float>::seeded(1, "unet"), network));
+        write_safetensors(file.path(), {{"x.a", {{1}, one}}, {"x.b", {{1}, one}}});
+        CHECK_NOTHROW(require_tensors(weights<float>::from_file(file.path()), [](weights<float>& source) {
+            source.take("x.a", {1});
+            source.take("x.b", {1});
+        }));
+    }
 }

@@ -66,8 +66,7 @@ inline void require_picture_grid(autoencoder_config const& config, grid_extents 
 /// The architecture in the config.json of an AutoencoderKL. Absent options have diffusers' defaults. Throws file_error
 /// naming the option that is unknown or has a value that the networks here cannot follow; value_error as require_config
 /// does.
-inline autoencoder_config read_autoencoder_config(std::filesystem::path const& path) {
-    config_file file(path);
+inline autoencoder_config read_autoencoder_config(config_file file) {
     file.expect("_class_name", {"AutoencoderKL"});
     file.expect("in_channels", {3});
     file.expect("out_channels", {3});

@@ -49,8 +49,7 @@ inline void require_config(clip_text_config const& config) {
 
 /// The architecture in the config.json of a CLIPTextModel. Absent options have transformers' defaults. Throws file_error
 /// naming the option that is unknown or has a value that the encoder here cannot follow.
-inline clip_text_config read_clip_text_config(std::filesystem::path const& path) {
-    config_file file(path);
+inline clip_text_config read_clip_text_config(config_file file) {
     file.expect("model_type", {"clip_text_model"});
     file.expect("architectures", {nullptr, nlohmann::json::array({"CLIPTextModel"})});
     clip_text_config config;

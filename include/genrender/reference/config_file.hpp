@@ -17,6 +17,7 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace genrender::reference {
@@ -34,9 +35,13 @@ public:
         }
         std::string const text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
         options_ = checked_json(text, path_, "file", "an object of options");
-        if (!options_.is_object()) {
-            throw file_error(path_ + ": file is a JSON " + options_.type_name() + ", expected an object of options");
-        }
+        require_object();
+    }
+
+    /// Options that are known without a config.json, `path` being the file to blame for them. Throws file_error if they
+    /// are no JSON object.
+    config_file(std::string path, nlohmann::json options) : path_(std::move(path)), options_(std::move(options)) {
+        require_object();
     }
 
     /// Path of the file that it was read from.
@@ -151,6 +156,12 @@ public:
     }
 
 private:
+    void require_object() const {
+        if (!options_.is_object()) {
+            throw file_error(path_ + ": file is a JSON " + options_.type_name() + ", expected an object of options");
+        }
+    }
+
     bool is_absent(std::string const& option) const { return !options_.contains(option); }
 
     static bool is_count(nlohmann::json const& value) {

@@ -62,9 +62,9 @@ public:
     /// `sites`. Throws value_error if the config cannot be built, file_error if a tensor is missing, misshapen or left
     /// over.
     controlnet(unet_config const& config, weights<Real>& source, site_list& sites)
-        : encoder_((require_config(config), config), source, sites), hint_(config, source),
-          mid_block_(source, "controlnet_mid_block", config.block_out_channels.back(), config.block_out_channels.back(),
-                     1) {
+        : encoder_((require_config(config), require_all_tensors(config, source), config), source, sites),
+          hint_(config, source), mid_block_(source, "controlnet_mid_block", config.block_out_channels.back(),
+                                            config.block_out_channels.back(), 1) {
         for (auto const channels : skip_channels(config)) {
             auto const name = "controlnet_down_blocks." + std::to_string(down_blocks_.size());
             down_blocks_.emplace_back(source, name, channels, channels, 1);
@@ -89,6 +89,14 @@ public:
         }
         project(pass, result.middle, mid_block_, scale);
         return result;
+    }
+
+    /// Throws file_error, naming all that is wrong at once, unless the tensors of `source` are those of this network.
+    static void require_all_tensors(unet_config const& config, weights<Real> const& source) {
+        require_tensors(source, [&](weights<Real>& listing) {
+            site_list sites({0, 0});
+            controlnet const network(config, listing, sites);
+        });
     }
 
 private:

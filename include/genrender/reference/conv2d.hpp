@@ -8,6 +8,7 @@
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/reference/padded_map.hpp>
+#include <genrender/reference/panel_source.hpp>
 #include <genrender/reference/weight_panels.hpp>
 #include <genrender/reference/weights.hpp>
 
@@ -29,20 +30,18 @@ public:
     conv2d(weights<Real>& source, std::string const& name, std::size_t in, std::size_t out, std::size_t kernel = 3,
            std::size_t stride = 1)
         : in_(in), kernel_(kernel), stride_(stride) {
-        // Asked for before there is memory for it, so that a wrong config is told by name.
-        auto const values = source.take(name + ".weight", {out, in, kernel, kernel});
         // Turn [out, in, tap] into [tap, in, out]: the channels of a token lie side by side.
         auto const taps = kernel * kernel;
-        weights_ = weight_panels<Real>(taps * in, out, [&](std::size_t input, std::size_t o) {
-            return values[(o * in + input % in) * taps + input / in];
-        });
+        weights_ =
+            take_panels(source, name + ".weight", {out, in, kernel, kernel}, taps * in, out,
+                        [&](std::size_t input, std::size_t o) { return (o * in + input % in) * taps + input / in; });
         bias_ = source.take(name + ".bias", {out});
     }
 
     /// Channels that it takes.
     std::size_t in_channels() const { return in_; }
     /// Channels that it gives.
-    std::size_t out_channels() const { return bias_.size(); }
+    std::size_t out_channels() const { return weights_.outputs(); }
     /// Of each output channel.
     std::span<Real const> bias() const { return bias_; }
 

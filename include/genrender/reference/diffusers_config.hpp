@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 // Every option that diffusers 0.42 writes for UNet2DConditionModel and ControlNetModel is read below: it is honoured,
@@ -72,6 +73,12 @@ inline void read_encoder_options(unet_config& config, config_file& file) {
 /// Takes the options of the UNet's config.json.
 inline void read_unet_options(unet_config& config, config_file& file) {
     file.expect("_class_name", {"UNet2DConditionModel"});
+    // What is published under the same class and is another architecture.
+    file.require(file["addition_embed_type"] != "text_time", "addition_embed_type",
+                 "null (Stable Diffusion 1.x or 2.x; this is Stable Diffusion XL)");
+    file.require(file["time_cond_proj_dim"].is_null(), "time_cond_proj_dim",
+                 "null (this is a latent consistency model, LCM)");
+    file.require(file["in_channels"] != 9 || file["out_channels"] == 9, "in_channels", "4 (this is for inpainting)");
     read_encoder_options(config, file);
     config.out_channels = file.count("out_channels", 4);
     file.require(config.in_channels == config.out_channels, "in_channels",
@@ -178,20 +185,25 @@ inline nlohmann::json encoder_json(unet_config const& config) {
 
 } // namespace internal
 
-/// The architecture in the config.json of a UNet and of its ControlNet and in scheduler_config.json. Throws file_error
-/// naming the option: one that is unknown, has a value that the networks here cannot follow, or differs between UNet
-/// and ControlNet; value_error as require_config does.
-inline unet_config read_diffusers_config(std::filesystem::path const& unet, std::filesystem::path const& controlnet,
-                                         std::filesystem::path const& scheduler) {
+/// The architecture in the options of a UNet, of its ControlNet and of their scheduler. Throws file_error naming the
+/// option: one that is unknown, has a value that the networks here cannot follow, or differs between UNet and
+/// ControlNet; value_error as require_config does.
+inline unet_config read_diffusers_config(config_file unet, config_file controlnet, config_file scheduler) {
     unet_config config;
-    config_file unet_file(unet);
-    internal::read_unet_options(config, unet_file);
-    config_file controlnet_file(controlnet);
-    internal::read_controlnet_options(config, controlnet_file, unet_file);
-    config_file scheduler_file(scheduler);
-    internal::read_scheduler_options(config, scheduler_file);
+    internal::read_unet_options(config, unet);
+    internal::read_controlnet_options(config, controlnet, unet);
+    internal::read_scheduler_options(config, scheduler);
     require_config(config);
     return config;
+}
+
+/// The same of files: config.json of UNet and ControlNet, scheduler_config.json.
+inline unet_config read_diffusers_config(std::filesystem::path const& unet, std::filesystem::path const& controlnet,
+                                         std::filesystem::path const& scheduler) {
+    // In this order: the first that cannot be read is named.
+    config_file unet_file(unet);
+    config_file controlnet_file(controlnet);
+    return read_diffusers_config(std::move(unet_file), std::move(controlnet_file), config_file(scheduler));
 }
 
 /// The config.json of a UNet: the options that are not diffusers' only choice.

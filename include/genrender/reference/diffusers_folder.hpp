@@ -6,88 +6,152 @@
 
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/diffusers_config.hpp>
+#include <genrender/reference/model_part.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
+#include <genrender/reference/tensor_place.hpp>
 #include <genrender/reference/unet_config.hpp>
+#include <genrender/reference/weight_files.hpp>
 #include <genrender/reference/weights.hpp>
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace genrender::reference {
 
-/// The safetensors files of a model `stem`, one of which must be there: `stem.safetensors`; the shards that
-/// `stem.safetensors.index.json` lists; the same of half precision, `stem.fp16...`. Throws file_error if none is, or if
-/// the index is not one.
-inline std::vector<std::string> safetensors_paths(std::filesystem::path const& folder, std::string const& stem) {
-    for (auto const& name : {stem, stem + ".fp16"}) {
-        auto const whole = folder / (name + ".safetensors");
-        if (std::filesystem::exists(whole)) {
-            return {whole.string()};
-        }
-        // diffusers puts the precision of shards behind the word index.
-        auto const index_name = name == stem ? stem + ".safetensors.index.json" : stem + ".safetensors.index.fp16.json";
-        if (!std::filesystem::exists(folder / index_name)) {
-            continue;
-        }
-        config_file const index(folder / index_name);
-        auto const& map = index["weight_map"];
-        // A shard lies beside the index, wherever that claims it to be.
-        auto const is_name = [](nlohmann::json const& value) {
-            auto const text = value.is_string() ? value.get<std::string>() : "";
-            return !text.empty() && text != "." && text != ".." && text.find_first_of("/\\:") == std::string::npos;
-        };
-        index.require(map.is_object() && !map.empty() && std::all_of(map.begin(), map.end(), is_name), "weight_map",
-                      "an object with the name of a file for each tensor");
-        std::set<std::string> paths;
-        for (auto const& shard : map) {
-            paths.insert((folder / shard.get<std::string>()).string());
-        }
-        return {paths.begin(), paths.end()};
+namespace internal {
+
+/// A text encoder's tensors, positions left out, which are no parameters. Files of transformers 5 leave out `text_model.`,
+/// with which all others begin.
+inline tensor_places with_text_names(tensor_places places) {
+    std::erase_if(places, [](auto const& item) { return item.first.ends_with("embeddings.position_ids"); });
+    if (!places.contains("embeddings.token_embedding.weight")) {
+        return places;
     }
-    throw file_error(folder.string() + ": there is no " + stem + ".safetensors, expected one, or its .fp16, or an " +
-                     "index of shards");
+    tensor_places result;
+    for (auto const& [name, place] : places) {
+        add_places(result, {{(name.starts_with("text_model.") ? "" : "text_model.") + name, place}});
+    }
+    return result;
 }
+
+/// The attention of a VAE in the names that diffusers has today: folders that are older than those call them query,
+/// key, value and proj_attn, some with 1x1 kernels for matrices.
+inline tensor_places with_attention_names(tensor_places const& places) {
+    static constexpr std::array<std::array<std::string_view, 2>, 4> rules{
+        {{".query.", ".to_q."}, {".key.", ".to_k."}, {".value.", ".to_v."}, {".proj_attn.", ".to_out.0."}}};
+    tensor_places result;
+    for (auto const& [name, place] : places) {
+        auto renamed = name;
+        auto moved = place;
+        if (name.find("mid_block.attentions.") != std::string::npos) {
+            for (auto const& [from, to] : rules) {
+                if (auto const at = renamed.find(from); at != std::string::npos) {
+                    renamed.replace(at, from.size(), to);
+                }
+            }
+            auto& shape = moved.shape;
+            if (shape.size() == 4 && shape[2] == 1 && shape[3] == 1) {
+                shape.resize(2);
+            }
+        }
+        add_places(result, {{renamed, moved}});
+    }
+    return result;
+}
+
+/// Throws file_error if a folder's model_index.json, where it has one, says that it is of another architecture.
+inline void refuse_foreign_pipeline(std::filesystem::path const& folder) {
+    static constexpr std::array<std::array<char const*, 2>, 7> foreign{
+        {{"StableDiffusionXL", "Stable Diffusion XL"},
+         {"StableDiffusion3", "Stable Diffusion 3"},
+         {"Flux", "Flux"},
+         {"Inpaint", "a model for inpainting"},
+         {"LatentConsistency", "an LCM"},
+         {"InstructPix2Pix", "a model for editing"},
+         {"Depth2Img", "told depth beside the latents"}}};
+    if (!std::filesystem::exists(folder / "model_index.json")) {
+        return;
+    }
+    config_file const index(folder / "model_index.json");
+    auto const& name = index["_class_name"];
+    for (auto const& [part, what] : foreign) {
+        index.require(!name.is_string() || name.get<std::string>().find(part) == std::string::npos, "_class_name",
+                      std::string("a pipeline of Stable Diffusion 1.x or 2.x (this is ") + what + ")");
+    }
+}
+
+} // namespace internal
 
 /// The parts of a folder:
 ///
 ///     unet/                      config.json, diffusion_pytorch_model.safetensors
 ///     controlnet/                config.json, diffusion_pytorch_model.safetensors
+///     vae/                       config.json, diffusion_pytorch_model.safetensors
 ///     scheduler/                 scheduler_config.json
 ///     text_encoder/              config.json, model.safetensors
 ///
-/// where the ControlNet may be a folder of its own, and the text encoder one that is known here, a prompt_vocabulary:
-/// its config.json is `{"_class_name": "PromptVocabulary", "words": ["stripes", ...], "hidden_size": 48}` and its only
+/// where the ControlNet may be a folder of its own, weights may lie in shards or as variants (see find_weights), and the
+/// text encoder may be a prompt_vocabulary: its config.json is `{"_class_name": "PromptVocabulary", "words": ["stripes", ...], "hidden_size": 48}` and its only
 /// tensor `token_embedding.weight` [1 + words, hidden_size].
 class diffusers_folder {
 public:
-    /// Reads no file yet. `controlnet` is by default the folder of that name inside.
-    explicit diffusers_folder(std::filesystem::path folder, std::filesystem::path controlnet = {})
-        : folder_(std::move(folder)), controlnet_(controlnet.empty() ? folder_ / "controlnet" : std::move(controlnet)) {
-    }
+    /// Reads no file yet. `controlnet` is by default the folder of that name inside. With a `variant`, say `fp16`, all
+    /// weights are of that one.
+    explicit diffusers_folder(std::filesystem::path folder, std::filesystem::path controlnet = {},
+                              std::string variant = {})
+        : folder_(std::move(folder)), controlnet_(controlnet.empty() ? folder_ / "controlnet" : std::move(controlnet)),
+          variant_(std::move(variant)) {}
 
-    /// The architecture. Throws as read_diffusers_config does.
+    /// The folder itself.
+    std::filesystem::path const& path() const { return folder_; }
+    /// Whether a network is there.
+    bool has(model_part part) const { return std::filesystem::exists(place_of(part) / "config.json"); }
+    /// A network's config.json. Throws file_error if it cannot be read.
+    config_file options(model_part part) const { return config_file(place_of(part) / "config.json"); }
+    /// The scheduler_config.json. Throws file_error if it cannot be read.
+    config_file scheduler_options() const { return config_file(folder_ / "scheduler" / "scheduler_config.json"); }
+    /// Throws file_error by name if model_index.json, where there is one, says that the folder is of an architecture
+    /// other than Stable Diffusion 1.x and 2.x.
+    void refuse_foreign() const { internal::refuse_foreign_pipeline(folder_); }
+    /// The architecture. Throws as read_diffusers_config and refuse_foreign do.
     unet_config config() const {
-        return read_diffusers_config(folder_ / "unet" / "config.json", controlnet_ / "config.json",
-                                     folder_ / "scheduler" / "scheduler_config.json");
+        refuse_foreign();
+        auto unet = options(model_part::unet);
+        auto controlnet = options(model_part::controlnet);
+        return read_diffusers_config(std::move(unet), std::move(controlnet), scheduler_options());
     }
 
-    /// The UNet's tensors. Throws file_error as safetensors_paths and safetensors_file do.
+    /// A network's tensors. Throws file_error as find_weights does.
+    tensor_places places(model_part part) const {
+        auto const stem = part == model_part::text_encoder ? "model" : "diffusion_pytorch_model";
+        auto found = find_weights(place_of(part), stem, variant_);
+        return part == model_part::text_encoder ? internal::with_text_names(std::move(found))
+               : part == model_part::vae        ? internal::with_attention_names(found)
+                                                : found;
+    }
+    /// The same, to build the network of. Throws file_error as find_weights does.
+    template <std::floating_point Real>
+    weights<Real> tensors(model_part part) const {
+        return weights<Real>::from_places(places(part), place_of(part).string());
+    }
+
+    /// The UNet's tensors. Throws file_error as find_weights does.
     template <std::floating_point Real>
     weights<Real> unet() const {
-        return weights<Real>::from_files(safetensors_paths(folder_ / "unet", "diffusion_pytorch_model"));
+        return tensors<Real>(model_part::unet);
     }
-
-    /// The ControlNet's tensors. Throws file_error as safetensors_paths and safetensors_file do.
+    /// The ControlNet's tensors. Throws file_error as find_weights does.
     template <std::floating_point Real>
     weights<Real> controlnet() const {
-        return weights<Real>::from_files(safetensors_paths(controlnet_, "diffusion_pytorch_model"));
+        return tensors<Real>(model_part::controlnet);
     }
 
     /// The text encoder, or nothing if there is none or one of another class than PromptVocabulary, whose tokens the
@@ -113,13 +177,21 @@ public:
                      std::to_string(channels) + ", the UNet's cross_attention_dim");
         file.ignore({"_class_name", "_diffusers_version", "_name_or_path"});
         file.require_all_taken();
-        auto source = weights<Real>::from_files(safetensors_paths(folder, "model"));
+        auto source = tensors<Real>(model_part::text_encoder);
         return prompt_vocabulary<Real>(source, channels, std::move(words));
     }
 
 private:
+    std::filesystem::path place_of(model_part part) const {
+        return part == model_part::controlnet ? controlnet_
+               : part == model_part::unet     ? folder_ / "unet"
+               : part == model_part::vae      ? folder_ / "vae"
+                                              : folder_ / "text_encoder";
+    }
+
     std::filesystem::path folder_;
     std::filesystem::path controlnet_;
+    std::string variant_;
 };
 
 } // namespace genrender::reference

@@ -6,6 +6,7 @@
 
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/strided_view.hpp>
+#include <genrender/reference/panel_source.hpp>
 #include <genrender/reference/weight_panels.hpp>
 #include <genrender/reference/weights.hpp>
 
@@ -46,11 +47,8 @@ public:
 
 private:
     linear(weights<Real>& source, std::string const& name, std::vector<std::size_t> const& shape, bool has_bias) {
-        // Asked for before there is memory for it, so that a wrong config is told by name.
-        auto const values = source.take(name + ".weight", shape);
-        weights_ = weight_panels<Real>(shape[1], shape[0], [&](std::size_t input, std::size_t output) {
-            return values[output * shape[1] + input];
-        });
+        weights_ = take_panels(source, name + ".weight", shape, shape[1], shape[0],
+                               [&](std::size_t input, std::size_t output) { return output * shape[1] + input; });
         if (has_bias) {
             bias_ = source.take(name + ".bias", {shape[0]});
         }

@@ -100,17 +100,37 @@ public:
     /// The texts under `__metadata__`.
     std::map<std::string, std::string> const& metadata() const { return metadata_; }
 
+    /// What a tensor is and where it lies. Throws file_error if there is no such tensor.
+    safetensors_entry const& entry(std::string const& name) const {
+        auto const found = entries_.find(name);
+        require(found != entries_.end(), "there is no tensor " + name,
+                "one among the " + std::to_string(entries_.size()) + " of the file");
+        return found->second;
+    }
+
     /// The elements of a tensor, row-major, converted to Real from F64, F32, F16 or BF16. Throws file_error if there is
     /// no such tensor or it is of another type.
     template <std::floating_point Real>
     std::vector<Real> read(std::string const& name) const {
-        auto const found = entries_.find(name);
-        require(found != entries_.end(), "there is no tensor " + name,
-                "one among the " + std::to_string(entries_.size()) + " of the file");
-        auto const& entry = found->second;
-        std::vector<char> bytes(entry.end - entry.begin);
+        return read<Real>(name, 0, static_cast<std::size_t>(internal::checked_product(entry(name).shape).value_or(0)));
+    }
+
+    /// The same of `count` elements from element `first` on, and no more of the file. Throws file_error if the tensor
+    /// has fewer.
+    template <std::floating_point Real>
+    std::vector<Real> read(std::string const& name, std::size_t first, std::size_t count) const {
+        auto const& entry = this->entry(name);
+        auto const is_number =
+            entry.dtype == "F64" || entry.dtype == "F32" || entry.dtype == "F16" || entry.dtype == "BF16";
+        require(is_number, "tensor " + name + " has dtype " + entry.dtype, "F64, F32, F16 or BF16");
+        auto const width = *internal::element_bytes(entry.dtype);
+        auto const stored = (entry.end - entry.begin) / width;
+        require(first <= stored && count <= stored - first,
+                "tensor " + name + " has " + std::to_string(stored) + " elements",
+                std::to_string(count) + " from element " + std::to_string(first) + " on");
+        std::vector<char> bytes(count * width);
         auto file = open();
-        file.seekg(static_cast<std::streamoff>(data_begin_ + entry.begin));
+        file.seekg(static_cast<std::streamoff>(data_begin_ + entry.begin + first * width));
         read_bytes(file, bytes.data(), bytes.size());
         if (entry.dtype == "F64") {
             return converted<Real, double>(bytes, [](double value) { return value; });
@@ -118,11 +138,7 @@ public:
         if (entry.dtype == "F32") {
             return converted<Real, float>(bytes, [](float value) { return value; });
         }
-        if (entry.dtype == "F16") {
-            return converted<Real, std::uint16_t>(bytes, float_of_half);
-        }
-        require(entry.dtype == "BF16", "tensor " + name + " has dtype " + entry.dtype, "F64, F32, F16 or BF16");
-        return converted<Real, std::uint16_t>(bytes, float_of_bfloat16);
+        return converted<Real, std::uint16_t>(bytes, entry.dtype == "F16" ? float_of_half : float_of_bfloat16);
     }
 
 private:

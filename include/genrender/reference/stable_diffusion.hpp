@@ -69,8 +69,9 @@ public:
                       decoder_.config().scale(), ("the ControlNet's " + std::to_string(config_.hint_scale())).c_str());
         unet<Real>::require_all_tensors(config_, files_.template tensors<Real>(model_part::unet));
         controlnet<Real>::require_all_tensors(config_, files_.template tensors<Real>(model_part::controlnet));
-        clip_text_encoder<Real>::require_all_tensors(text_config_,
-                                                     files_.template tensors<Real>(model_part::text_encoder));
+        require_tensors(files_.template tensors<Real>(model_part::text_encoder), [&](weights<Real>& listing) {
+            clip_text_encoder<Real> const network(text_config_, listing);
+        });
     }
 
     /// The architecture of UNet and ControlNet.
@@ -138,7 +139,11 @@ private:
 
     static autoencoder_kl<Real> decoder_of(pipeline_files const& files) {
         auto source = files.template tensors<Real>(model_part::vae);
-        return {read_autoencoder_config(files.options(model_part::vae)), source, autoencoder_parts::decoder};
+        auto const config = read_autoencoder_config(files.options(model_part::vae));
+        require_tensors(source, [&](weights<Real>& listing) {
+            autoencoder_kl<Real> const network(config, listing, autoencoder_parts::decoder);
+        });
+        return {config, source, autoencoder_parts::decoder};
     }
 
     pipeline_files files_;

@@ -80,7 +80,7 @@ public:
     /// `sites`. Throws value_error if the config cannot be built, file_error if a tensor is missing, misshapen or left
     /// over.
     unet(unet_config const& config, weights<Real>& source, site_list& sites)
-        : encoder_((require_config(config), config), source, sites),
+        : encoder_((require_config(config), require_all_tensors(config, source), config), source, sites),
           conv_norm_out_(source, "conv_norm_out", config.block_out_channels.front(), config.norm_num_groups,
                          Real(1e-5)),
           conv_out_(source, "conv_out", config.block_out_channels.front(), config.out_channels) {
@@ -129,6 +129,14 @@ public:
             conv_out_(result[i], normed, {conv_out_.bias()}, pass.tokens());
         });
         return result;
+    }
+
+    /// Throws file_error, naming all that is wrong at once, unless the tensors of `source` are those of this network.
+    static void require_all_tensors(unet_config const& config, weights<Real> const& source) {
+        require_tensors(source, [&](weights<Real>& listing) {
+            site_list sites({0, 0});
+            unet const network(config, listing, sites);
+        });
     }
 
 private:

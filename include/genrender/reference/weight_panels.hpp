@@ -94,6 +94,14 @@ public:
         }
     }
 
+    /// Extents without weights, of which no product can be asked.
+    static weight_panels of_extents(std::size_t inputs, std::size_t outputs) {
+        weight_panels result;
+        result.inputs_ = inputs;
+        result.outputs_ = outputs;
+        return result;
+    }
+
     /// Numbers of a token that it takes.
     std::size_t inputs() const { return inputs_; }
     /// Numbers of a token that it gives.

@@ -5,14 +5,18 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
+#include <genrender/reference/lora_merge.hpp>
 #include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
+#include <genrender/reference/tensor_place.hpp>
 
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,17 +35,20 @@ public:
     /// does, and for a tensor that is in two of them.
     static weights from_files(std::vector<std::string> const& paths) {
         require_value(!paths.empty(), "weights", "paths", "empty", "at least one");
-        weights result;
+        tensor_places places;
         for (auto const& path : paths) {
-            safetensors_file const& file = result.files_.emplace_back(path);
-            for (auto const& [name, entry] : file.entries()) {
-                auto const [other, is_new] = result.file_of_.emplace(name, result.files_.size() - 1);
-                if (!is_new) {
-                    throw file_error(path + ": tensor " + name + " is in " + result.files_[other->second].path() +
-                                     " too, expected each tensor once");
-                }
-            }
+            add_places(places, reference::places_of(std::make_shared<safetensors_file const>(path)));
         }
+        return from_places(std::move(places), paths.front());
+    }
+
+    /// Tensors wherever they lie. `path` is the file or folder to blame for what is in no file. Throws value_error if it
+    /// is empty.
+    static weights from_places(tensor_places places, std::string path) {
+        require_value(!path.empty(), "weights", "path", "empty", "that of a file or a folder");
+        weights result;
+        result.places_ = std::move(places);
+        result.path_ = std::move(path);
         return result;
     }
 
@@ -54,22 +61,88 @@ public:
         return result;
     }
 
+    /// A store of nothing, which remembers what is asked for: whatever is taken is empty. A network can be built of it, in
+    /// no time and memory, to learn its tensors' names and shapes, but not run. The error for more than `most` tensors
+    /// blames `path`.
+    static weights listing(std::size_t most, std::string path) {
+        weights result;
+        result.most_ = most;
+        result.path_ = std::move(path);
+        return result;
+    }
+    /// Whether whatever is taken is empty.
+    bool is_listing() const { return most_ > 0; }
+
+    /// Throws file_error unless the tensors of the files are those that a listing was asked for, naming all that are
+    /// missing, have another shape, or have no place. Nothing can be wrong with random tensors.
+    void require_those_of(weights const& listing) const {
+        if (!is_of_files()) {
+            return;
+        }
+        counted_names missing, misshapen, surplus;
+        for (auto const& [name, shape] : listing.taken_) {
+            auto const found = places_.find(name);
+            if (found == places_.end()) {
+                missing.add(name + " " + extents_text(shape));
+            } else if (found->second.shape != shape) {
+                misshapen.add(name + " is " + extents_text(found->second.shape) + " where " + extents_text(shape) +
+                              " is asked for");
+            }
+        }
+        for (auto const& [name, place] : places_) {
+            if (!listing.taken_.contains(name) && !is_left(name) && !listing.is_left(name)) {
+                surplus.add(name);
+            }
+        }
+        std::string sentence;
+        auto const tell = [&](counted_names const& names, char const* what) {
+            if (names.count() > 0) {
+                sentence += (sentence.empty() ? "" : "; ") + std::to_string(names.count()) + what + names.text();
+            }
+        };
+        tell(missing, " tensors are missing: ");
+        tell(misshapen, " tensors have another shape: ");
+        tell(surplus, " tensors have no place in the network: ");
+        if (!sentence.empty()) {
+            throw file_error(path_ + ": " + sentence + ", expected none");
+        }
+    }
+
+    /// How many tensors the files hold; 0 if they are random.
+    std::size_t stored_count() const { return places_.size(); }
+    /// The file or folder to blame; empty if tensors are random.
+    std::string const& path() const { return path_; }
+
+    /// Adds what a LoRA changes in this network, `scale` times, to the tensors that are taken from now on; several LoRAs
+    /// add up. Throws value_error if tensors are random or the scale is not finite, file_error as differences_of does.
+    void add_lora(lora_file const& lora, model_part part, double scale = 1) {
+        require_value(is_of_files(), "weights", "tensors", "random", "of files, where a LoRA is to be merged");
+        require_value(is_finite(scale), "weights", "scale", scale, "a finite number");
+        auto const found = differences_of(lora, part, places_);
+        for (auto [name, difference] : found) {
+            difference.factor *= scale;
+            differences_.emplace(name, std::move(difference));
+        }
+    }
+
     /// The elements of tensor `name`, row-major. Throws file_error `path: there is no tensor ...` or `path: tensor ...
     /// is [..], expected [..]`.
     std::vector<Real> take(std::string const& name, std::vector<std::size_t> const& shape) {
         taken_.insert_or_assign(name, shape);
-        if (!files_.empty()) {
-            auto const& file = file_with(name);
-            auto const found = file.entries().find(name);
-            if (found == file.entries().end()) {
-                throw file_error(file.path() + ": there is no tensor " + name + ", expected one of shape " +
-                                 extents_text(shape));
+        if (is_listing()) {
+            if (taken_.size() > most_) {
+                throw file_error(path_ + ": the config asks for more than " + std::to_string(most_) +
+                                 " tensors, expected about as many as there are");
             }
-            if (found->second.shape != shape) {
-                throw file_error(file.path() + ": tensor " + name + " is " + extents_text(found->second.shape) +
+            return {};
+        }
+        if (is_of_files()) {
+            auto const& place = place_of(name, shape);
+            if (place.shape != shape) {
+                throw file_error(place.file->path() + ": tensor " + name + " is " + extents_text(place.shape) +
                                  ", expected " + extents_text(shape));
             }
-            return file.template read<Real>(name);
+            return read<Real>(name, place);
         }
         auto const values = seeded_tensor(seed_, network_, name, shape);
         return {values.begin(), values.end()};
@@ -77,28 +150,22 @@ public:
 
     /// Whether one of the files holds a tensor of this name. A seeded store, which makes what it is asked for, holds
     /// none.
-    bool holds(std::string const& name) const { return file_of_.contains(name); }
+    bool holds(std::string const& name) const { return places_.contains(name); }
 
     /// Lets tensors be left over whose names begin so: what a file holds beside the network that is built.
     void leave(std::string const& beginning) { left_.push_back(beginning); }
 
     /// Throws file_error naming the tensors of the files that nobody took or left.
     void require_all_taken() const {
-        std::string surplus;
-        std::size_t count = 0;
-        auto const is_left = [&](std::string const& name) {
-            return std::any_of(left_.begin(), left_.end(),
-                               [&](auto const& beginning) { return name.starts_with(beginning); });
-        };
-        for (auto const& [name, file] : file_of_) {
-            if (!taken_.contains(name) && !is_left(name) && ++count <= 5) {
-                surplus += (count > 1 ? ", " : "") + name;
+        counted_names surplus;
+        for (auto const& [name, place] : places_) {
+            if (!taken_.contains(name) && !is_left(name)) {
+                surplus.add(name);
             }
         }
-        if (count > 0) {
-            throw file_error(files_.front().path() + ": " + std::to_string(count) +
-                             " tensors have no place in the network: " + surplus + (count > 5 ? ", ..." : "") +
-                             ", expected none");
+        if (surplus.count() > 0) {
+            throw file_error(path_ + ": " + std::to_string(surplus.count()) +
+                             " tensors have no place in the network: " + surplus.text() + ", expected none");
         }
     }
 
@@ -118,8 +185,8 @@ public:
     std::map<std::string, std::vector<float>> values() const {
         std::map<std::string, std::vector<float>> result;
         for (auto const& [name, shape] : taken_) {
-            result[name] = files_.empty() ? seeded_tensor(seed_, network_, name, shape)
-                                          : file_with(name).template read<float>(name);
+            result[name] =
+                is_of_files() ? read<float>(name, place_of(name, shape)) : seeded_tensor(seed_, network_, name, shape);
         }
         return result;
     }
@@ -138,19 +205,53 @@ public:
 private:
     weights() = default;
 
-    /// The file that holds a tensor, or, if none does, the one to blame.
-    safetensors_file const& file_with(std::string const& name) const {
-        auto const found = file_of_.find(name);
-        return files_[found == file_of_.end() ? 0 : found->second];
+    bool is_left(std::string const& name) const {
+        return std::any_of(left_.begin(), left_.end(),
+                           [&](auto const& beginning) { return name.starts_with(beginning); });
     }
 
-    std::vector<safetensors_file> files_;
-    std::map<std::string, std::size_t> file_of_;
+    tensor_place const& place_of(std::string const& name, std::vector<std::size_t> const& shape) const {
+        auto const found = places_.find(name);
+        if (found == places_.end()) {
+            throw file_error(path_ + ": there is no tensor " + name + ", expected one of shape " + extents_text(shape));
+        }
+        return found->second;
+    }
+
+    template <class Number>
+    std::vector<Number> read(std::string const& name, tensor_place const& place) const {
+        auto values = place.template read<Number>();
+        auto const [first, last] = differences_.equal_range(name);
+        for (auto it = first; it != last; ++it) {
+            add_difference<Number>(values, it->second);
+        }
+        return values;
+    }
+
+    bool is_of_files() const { return !path_.empty() && !is_listing(); }
+
+    tensor_places places_;
+    lora_differences differences_;
+    std::string path_;     // none if tensors are random
+    std::size_t most_ = 0; // above 0 if nothing is stored
     std::uint64_t seed_ = 0;
     std::string network_;
     std::map<std::string, std::vector<std::size_t>> taken_;
     std::vector<std::string> left_;
 };
+
+/// Throws file_error, naming all that is wrong at once, unless the tensors of `source` are those of a network, which
+/// `build(listing)` builds of a store of nothing.
+template <std::floating_point Real, class Build>
+void require_tensors(weights<Real> const& source, Build const& build) {
+    if (source.stored_count() == 0) {
+        return;
+    }
+    // A config can ask for anything; what is listed stays of the order of what is stored.
+    auto listing = weights<Real>::listing(2 * source.stored_count() + 1000, source.path());
+    build(listing);
+    source.require_those_of(listing);
+}
 
 } // namespace genrender::reference
 

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Which of a network's weights each difference of a LoRA is of, and their sum.
+#pragma once
+
+#include <genrender/core/begin_header.inl>
+
+#include <genrender/core/error.hpp>
+#include <genrender/reference/lora_file.hpp>
+#include <genrender/reference/tensor_place.hpp>
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace genrender::reference {
+
+/// Differences by the weight that they are added to.
+using lora_differences = std::multimap<std::string, lora_difference>;
+
+namespace internal {
+
+/// Names with underscores for dots, and the weights that they may mean.
+inline std::multimap<std::string, std::string> underscored_names(tensor_places const& places) {
+    std::multimap<std::string, std::string> names;
+    for (auto const& [name, place] : places) {
+        if (name.ends_with(".weight") && place.shape.size() >= 2) {
+            auto module = name.substr(0, name.size() - std::string_view(".weight").size());
+            std::replace(module.begin(), module.end(), '.', '_');
+            names.emplace(std::move(module), name);
+        }
+    }
+    return names;
+}
+
+/// Throws file_error unless a difference has the shape of its weight.
+inline void require_fits(lora_file const& lora, std::string const& name, tensor_place const& weight,
+                         lora_difference const& difference) {
+    auto const& down = difference.down.shape;
+    auto const& up = difference.up.shape;
+    auto const& shape = weight.shape;
+    auto const fits = shape.size() >= 2 && up[0] == shape[0] && down[1] == shape[1] &&
+                      difference.down.count() / down[0] == weight.count() / std::max<std::size_t>(1, shape[0]) &&
+                      (down.size() == 2 || shape.size() == 2 ||
+                       std::equal(down.begin() + 2, down.end(), shape.begin() + 2, shape.end()));
+    if (!fits) {
+        throw file_error(lora.path() + ": factors of " + difference.down.stored + " are " + extents_text(down) +
+                         " and " + extents_text(up) + ", expected those of " + name + " " + extents_text(shape));
+    }
+}
+
+} // namespace internal
+
+/// The differences that a LoRA has for one network, whose weights are `places`. A name with underscores, as kohya writes
+/// it, is that of the weight whose name is the same with underscores for dots. Throws file_error naming modules that the
+/// network does not have, or that may be two; and factors that do not have the shape of their weight.
+inline lora_differences differences_of(lora_file const& lora, model_part part, tensor_places const& places) {
+    auto const underscored = internal::underscored_names(places);
+    lora_differences result;
+    counted_names unknown;
+    std::size_t count = 0;
+    for (auto const& module : lora.modules()) {
+        if (module.part != part) {
+            continue;
+        }
+        ++count;
+        std::string name = module.name + ".weight";
+        if (module.is_underscored) {
+            auto const [first, last] = underscored.equal_range(module.name);
+            if (first != last && std::next(first) != last) {
+                throw file_error(lora.path() + ": module " + module.name + " may be " + first->second + " or " +
+                                 std::next(first)->second + ", expected one");
+            }
+            name = first == last ? "" : first->second;
+        } else if (part == model_part::text_encoder && !name.starts_with("text_model.")) {
+            name = "text_model." + name;
+        }
+        auto const found = places.find(name);
+        if (found == places.end()) {
+            unknown.add(module.name);
+            continue;
+        }
+        internal::require_fits(lora, name, found->second, module.difference);
+        result.emplace(name, module.difference);
+    }
+    if (unknown.count() > 0) {
+        throw file_error(lora.path() + ": " + std::to_string(unknown.count()) + " of " + std::to_string(count) +
+                         " modules have no place in the " + name_of(part) + ": " + unknown.text() + ", expected none");
+    }
+    return result;
+}
+
+/// Adds factor * up down to a weight [out, in, ...], row-major. Throws file_error if the factors cannot be read.
+template <std::floating_point Real>
+void add_difference(std::span<Real> weight, lora_difference const& difference) {
+    auto const down = difference.down.template read<Real>();
+    auto const up = difference.up.template read<Real>();
+    auto const rank = difference.down.shape[0];
+    auto const rows = difference.up.shape[0];
+    auto const columns = down.size() / rank;
+    auto const factor = static_cast<Real>(difference.factor);
+    std::vector<Real> row(columns);
+    for (std::size_t o = 0; o < rows; ++o) {
+        std::fill(row.begin(), row.end(), Real(0));
+        for (std::size_t r = 0; r < rank; ++r) {
+            auto const weight_of_row = up[o * rank + r];
+            for (std::size_t i = 0; i < columns; ++i) {
+                row[i] += weight_of_row * down[r * columns + i];
+            }
+        }
+        for (std::size_t i = 0; i < columns; ++i) {
+            weight[o * columns + i] += factor * row[i];
+        }
+    }
+}
+
+} // namespace genrender::reference
+
+#include <genrender/core/end_header.inl>
