@@ -17,6 +17,8 @@ sh cmake/quickstart.sh WHAT
             what continuous integration checks besides: the installed package and each of its headers, what must not
             compile, what the program must refuse, that the rules of the house catch who breaks them, benchmarks for a
             moment, clang-format and clang-tidy; that every public name has a comment
+  fuzz      what reads files, each for a minute with inputs that libFuzzer makes; GENRENDER_FUZZ_SECONDS says for how long
+            (slow_checks does it for ten seconds)
   bench     every benchmark beside its floor and its target, as one table (build/bench/benchmarks.md and .json); PyTorch,
             NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
@@ -154,12 +156,21 @@ slow_checks() {
     find include tests examples benchmarks '(' -name '*.[ch]pp' -o -name '*.inl' ')' -exec \
         clang-format-14 --dry-run --Werror '{}' +
     workflow slow_checks test
+    say "Fuzzing"
+    GENRENDER_FUZZ_SECONDS="${GENRENDER_FUZZ_SECONDS:-10}" workflow fuzz
     say "clang-tidy"
     # shellcheck disable=SC2086 # a list of words
     printf '%s\n' $tidy_units | xargs -P 2 -n 1 clang-tidy --quiet --warnings-as-errors='*' -p build/test \
         --extra-arg=-Wno-unknown-warning-option
     say "Passed"
     printf '%s' "$counts"
+}
+
+fuzz() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $test_packages
+    GENRENDER_FUZZ_SECONDS="${GENRENDER_FUZZ_SECONDS:-60}" workflow fuzz
+    say "Passed"
 }
 
 evaluate() {
@@ -204,6 +215,7 @@ case ${1-} in
     tables) cmake -P cmake/write_tables.cmake ;;
     test) run_tests ;;
     slow_checks) slow_checks ;;
+    fuzz) fuzz ;;
     bench)
         shift
         bench "$@"
