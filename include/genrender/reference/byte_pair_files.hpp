@@ -81,7 +81,7 @@ inline void add_merge(byte_pair_encoding& encoding, std::string const& text, std
 } // namespace internal
 
 /// The encoding of the texts of vocab.json, an object of ids by tokens, and merges.txt, a merge a line in the order of
-/// their use. Lines that begin with #version do not count, nor does an empty last one. `unknown` is the token for bytes
+/// their use. Lines that begin with `#version` do not count, nor does an empty last one. `unknown` is the token for bytes
 /// that are in no other. Throws file_error naming the path with the key or the line for what cannot be.
 inline byte_pair_encoding encoding_of_vocabulary_and_merges(std::string const& vocabulary,
                                                             std::string const& vocabulary_path,
