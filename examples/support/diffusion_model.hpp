@@ -69,11 +69,12 @@ public:
             return notes;
         }
         auto const& pipeline = std::get<stable_diffusion<float>>(networks_);
-        for (auto const& [option, text] : {std::pair("--prompt", &prompt_.text), {"--negative-prompt", &prompt_.negative}}) {
+        for (auto const& [option, text] :
+             {std::pair("--prompt", &prompt_.text), {"--negative-prompt", &prompt_.negative}}) {
             auto const tokens = pipeline.tokens(*text);
             if (tokens.cut > 0) {
-                notes.push_back(std::string(option) + ": " + std::to_string(tokens.cut) + " tokens have no room and are " +
-                                "cut: " + tokens.cut_text());
+                notes.push_back(std::string(option) + ": " + std::to_string(tokens.cut) +
+                                " tokens have no room and are " + "cut: " + tokens.cut_text());
             }
         }
         return notes;

@@ -99,7 +99,8 @@ inline std::pair<std::filesystem::path, double> lora_of(std::string const& text)
     auto const* const end = text.data() + text.size();
     auto const [rest, error] = std::from_chars(text.data() + colon + 1, end, scale);
     if (error != std::errc() || rest != end || !is_finite(scale)) {
-        throw CLI::ValidationError("--lora", "scale is '" + text.substr(colon + 1) + "', expected a number, as in FILE:0.8");
+        throw CLI::ValidationError("--lora",
+                                   "scale is '" + text.substr(colon + 1) + "', expected a number, as in FILE:0.8");
     }
     return {text.substr(0, colon), scale};
 }
@@ -164,9 +165,10 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         app.add_option("--frames", frames, "number of frames (24; with --maps: at most this many)")
             ->check(positive)
             ->type_name("N");
-    app.add_option("--size,--height", options.size,
-                   "height of the frames in pixels, a multiple of 8 and of 64 with Stable Diffusion (what the model was\n"
-                   "trained for: 64, 512); the width follows the input: the same, with --maps as they have it")
+    app.add_option(
+           "--size,--height", options.size,
+           "height of the frames in pixels, a multiple of 8 and of 64 with Stable Diffusion (what the model was\n"
+           "trained for: 64, 512); the width follows the input: the same, with --maps as they have it")
         ->check(positive)
         ->type_name("PX");
     app.add_option("--width", options.width, "width of the frames in pixels")->check(positive)->type_name("PX");
@@ -237,9 +239,10 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->excludes("--check");
     auto* const of_pipeline = app.add_option_group("Model", "Stable Diffusion 1.x or 2.x with a ControlNet for depth");
     of_pipeline
-        ->add_option("--pipeline", options.pipeline,
-                     "a folder in diffusers' layout or a checkpoint in one file (the trained reference denoiser), or the\n"
-                     "word random: the reference denoiser without training")
+        ->add_option(
+            "--pipeline", options.pipeline,
+            "a folder in diffusers' layout or a checkpoint in one file (the trained reference denoiser), or the\n"
+            "word random: the reference denoiser without training")
         ->check(not_empty)
         ->type_name("DIR|FILE");
     of_pipeline
@@ -261,13 +264,15 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(not_empty)
         ->type_name("DIR");
     of_pipeline
-        ->add_option("--variant", options.variant, "of the weights in a folder, such as fp16 (the whole ones, else fp16)")
+        ->add_option("--variant", options.variant,
+                     "of the weights in a folder, such as fp16 (the whole ones, else fp16)")
         ->check(not_empty)
         ->type_name("NAME");
     std::string prediction_type;
     of_pipeline
-        ->add_option("--prediction-type", prediction_type,
-                     "epsilon or v_prediction: what a file of Stable Diffusion 2.x was trained for, which it does not say")
+        ->add_option(
+            "--prediction-type", prediction_type,
+            "epsilon or v_prediction: what a file of Stable Diffusion 2.x was trained for, which it does not say")
         ->check(one_of(all_names(prediction_type_names)))
         ->type_name("NAME");
     of_pipeline->add_option("--clip-skip", options.prompt.clip_skip, "last layers of the text encoder to leave out")

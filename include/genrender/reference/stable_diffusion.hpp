@@ -69,9 +69,8 @@ public:
                       decoder_.config().scale(), ("the ControlNet's " + std::to_string(config_.hint_scale())).c_str());
         unet<Real>::require_all_tensors(config_, files_.template tensors<Real>(model_part::unet));
         controlnet<Real>::require_all_tensors(config_, files_.template tensors<Real>(model_part::controlnet));
-        require_tensors(files_.template tensors<Real>(model_part::text_encoder), [&](weights<Real>& listing) {
-            clip_text_encoder<Real> const network(text_config_, listing);
-        });
+        require_tensors(files_.template tensors<Real>(model_part::text_encoder),
+                        [&](weights<Real>& listing) { clip_text_encoder<Real> const network(text_config_, listing); });
     }
 
     /// The architecture of UNet and ControlNet.
