@@ -38,7 +38,7 @@ public:
 
     /// The architecture of its networks.
     unet_config const& config() const {
-        return std::visit([](auto const& networks) -> unet_config const& { return config_of(networks); }, networks_);
+        return std::visit([](auto const& one) -> unet_config const& { return config_of(one); }, networks_);
     }
     /// Pixels of a picture along a side of a token of the latents.
     std::size_t scale() const {
@@ -136,8 +136,9 @@ private:
         if (files.folder() != nullptr && options.tokenizer.empty()) {
             auto config = files.config();
             if (auto vocabulary = files.folder()->vocabulary<float>(config.cross_attention_dim)) {
-                return reference_weights<float>{std::move(config), files.tensors<float>(model_part::unet),
-                                                files.tensors<float>(model_part::controlnet), std::move(vocabulary)};
+                return reference_weights<float>{std::move(config), files.tensors<float>(reference::model_part::unet),
+                                                files.tensors<float>(reference::model_part::controlnet),
+                                                std::move(vocabulary)};
             }
         }
         return networks(std::in_place_type<stable_diffusion<float>>, std::move(files), options.tokenizer);

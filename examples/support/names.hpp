@@ -5,6 +5,7 @@
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/noise/initial_noise.hpp>
+#include <genrender/sampling/preconditioning.hpp>
 #include <genrender/sampling/sampler.hpp>
 
 #include <cstddef>
