@@ -258,4 +258,5 @@ genrender_component(reference PACKAGES nlohmann_json HEADERS
     reference/weight_files.hpp
     reference/weight_panels.hpp
     reference/weight_panels.inl
+    reference/weight_storage.hpp
     reference/weights.hpp)

@@ -48,4 +48,5 @@
 #include <genrender/reference/unet_encoder.hpp>
 #include <genrender/reference/weight_files.hpp>
 #include <genrender/reference/weight_panels.hpp>
+#include <genrender/reference/weight_storage.hpp>
 #include <genrender/reference/weights.hpp>
