@@ -283,4 +283,5 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/weight_files.hpp
     reference/weight_panels.hpp
     reference/weight_panels.inl
+    reference/weight_storage.hpp
     reference/weights.hpp)

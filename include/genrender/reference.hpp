@@ -70,4 +70,5 @@
 #include <genrender/reference/vae_resnet.hpp>
 #include <genrender/reference/weight_files.hpp>
 #include <genrender/reference/weight_panels.hpp>
+#include <genrender/reference/weight_storage.hpp>
 #include <genrender/reference/weights.hpp>

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -51,5 +52,29 @@ TEST_SUITE("core/half_precision") {
         CHECK(half_of_float(65520.0f) == 0x7C00);
         CHECK(half_of_float(1e30f) == 0x7C00);
         CHECK(half_of_float(1e-30f) == 0);
+    }
+
+    TEST_CASE("every bfloat16 survives the way through float") {
+        int wrong = 0;
+        for (std::uint32_t bits = 0; bits < 0x10000; ++bits) {
+            auto const value = float_of_bfloat16(static_cast<std::uint16_t>(bits));
+            auto const back = bfloat16_of_float(value);
+            wrong += std::isnan(value) ? !std::isnan(float_of_bfloat16(back)) : back != bits;
+        }
+        CHECK(wrong == 0);
+    }
+
+    TEST_CASE("floats go to the nearest bfloat16 and ties to even") {
+        for (auto const bits : std::array<std::uint16_t, 6>{0x0000, 0x0001, 0x007F, 0x3F80, 0x3F81, 0x7F7E}) {
+            auto const low = float_of_bfloat16(bits);
+            auto const high = float_of_bfloat16(static_cast<std::uint16_t>(bits + 1));
+            auto const middle = low + (high - low) / 2;
+            CHECK(bfloat16_of_float(middle) == (bits % 2 == 0 ? bits : bits + 1));
+            CHECK(bfloat16_of_float(std::nextafter(middle, low)) == bits);
+            CHECK(bfloat16_of_float(std::nextafter(middle, high)) == bits + 1);
+            CHECK(bfloat16_of_float(-std::nextafter(middle, low)) == (bits | 0x8000));
+        }
+        CHECK(bfloat16_of_float(std::numeric_limits<float>::max()) == 0x7F80);
+        CHECK(std::isnan(float_of_bfloat16(bfloat16_of_float(std::bit_cast<float>(0x7F800001U)))));
     }
 }

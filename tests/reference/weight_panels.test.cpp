@@ -125,4 +125,46 @@ TEST_SUITE("reference/weight_panels") {
         CHECK(out(2, 0) == 24);
         CHECK(out(3, 0) == 28);
     }
+
+    TEST_CASE_TEMPLATE("weights in 16 bits give to the bit what their values give in full width", Real, float, double) {
+        for (std::size_t const tokens : {1U, 5U, 12U, 31U}) {
+            for (std::size_t const outputs : {1U, 8U, 15U, 33U, 70U}) {
+                auto const W = random_stack<Real, 2>({40, outputs}, 1);
+                auto const in = random_stack<Real, 2>({tokens, 40}, 2);
+                auto const bias = vector_of<Real>(outputs, 4);
+                for (auto const storage : {weight_storage::float16, weight_storage::bfloat16}) {
+                    auto const rounded = [&](std::size_t i, std::size_t o) {
+                        auto const weight = static_cast<float>(W(i, o));
+                        return static_cast<Real>(storage == weight_storage::float16
+                                                     ? float_of_half(half_of_float(weight))
+                                                     : float_of_bfloat16(bfloat16_of_float(weight)));
+                    };
+                    weight_panels<Real> const narrow(
+                        40, outputs, [&](auto i, auto o) { return W(i, o); }, storage);
+                    weight_panels<Real> const wide(40, outputs, rounded);
+                    CHECK(narrow.bytes() * sizeof(Real) == wide.bytes() * 2);
+                    stack<Real, 2> out({tokens, outputs});
+                    stack<Real, 2> expected({tokens, outputs});
+                    narrow.multiply(out.view(), token_inputs<Real>::rows_of(in.view()), {bias, {}});
+                    wide.multiply(expected.view(), token_inputs<Real>::rows_of(in.view()), {bias, {}});
+                    CHECK(std::equal(out.data(), out.data() + out.size(), expected.data()));
+                }
+            }
+        }
+    }
+
+    TEST_CASE("the least and the greatest numbers of 16 bits are widened as they are") {
+        std::vector<float> const weights{0x1p-24f, -0x1p-24f, 0x1.ff8p-15f, 65504.0f, -65504.0f, 0.0f};
+        weight_panels<float> const panels(
+            1, weights.size(), [&](auto, auto o) { return weights[o]; }, weight_storage::float16);
+        stack<float, 2> in({13, 1});
+        std::fill_n(in.data(), in.size(), 2.0f);
+        stack<float, 2> out({13, weights.size()});
+        panels.multiply(out.view(), token_inputs<float>::rows_of(in.view()));
+        for (std::size_t t = 0; t < 13; ++t) {
+            for (std::size_t o = 0; o < weights.size(); ++o) {
+                CHECK(out(t, o) == 2 * weights[o]);
+            }
+        }
+    }
 }

@@ -28,6 +28,15 @@ constexpr float float_of_bfloat16(std::uint16_t bits) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(bits) << 16);
 }
 
+/// The bits of the bfloat16 number nearest to `value`, ties to even; infinity beyond the greatest, NaN for NaN.
+constexpr std::uint16_t bfloat16_of_float(float value) {
+    auto const bits = std::bit_cast<std::uint32_t>(value);
+    if ((bits & 0x7FFFFFFFU) > 0x7F800000U) {
+        return static_cast<std::uint16_t>(bits >> 16 | 0x40U);
+    }
+    return static_cast<std::uint16_t>((bits + 0x7FFFU + (bits >> 16 & 1U)) >> 16);
+}
+
 /// The bits of the binary16 number nearest to `value`, ties to even; infinity from 65520 on, NaN for NaN.
 constexpr std::uint16_t half_of_float(float value) {
     auto const bits = std::bit_cast<std::uint32_t>(value);

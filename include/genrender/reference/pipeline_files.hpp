@@ -26,6 +26,7 @@ namespace genrender::reference {
 struct pipeline_choice {
     std::string variant{};                       ///< of the weights in folders, say `fp16`; empty: see find_weights
     std::optional<prediction> prediction_type{}; ///< of a single file, where no tensor says it: see single_file
+    bool keeps_file_width = false;               ///< whether weights of 16 bits stay so: see weights::keep_file_width
 };
 
 /// The networks of a pipeline, each in a folder of diffusers' layout or in a single file.
@@ -45,7 +46,8 @@ public:
     explicit pipeline_files(std::filesystem::path const& pipeline, std::filesystem::path const& controlnet = {},
                             pipeline_choice const& choice = {})
         : folder_(pipeline, std::filesystem::is_directory(controlnet) ? controlnet : std::filesystem::path(),
-                  choice.variant) {
+                  choice.variant),
+          keeps_file_width_(choice.keeps_file_width) {
         if (!std::filesystem::is_directory(pipeline)) {
             file_.emplace(existing(pipeline), choice.prediction_type);
         }
@@ -83,6 +85,7 @@ public:
     template <std::floating_point Real>
     weights<Real> tensors(model_part part) const {
         auto source = with_holder(part, [&](auto const& holder) { return holder.template tensors<Real>(part); });
+        source.keep_file_width(keeps_file_width_);
         for (auto const& [lora, scale] : loras_) {
             source.add_lora(lora, part, scale);
         }
@@ -100,6 +103,7 @@ private:
     }
 
     diffusers_folder folder_;
+    bool keeps_file_width_;
     bool has_control_folder_ = false;
     std::optional<single_file> file_;
     std::optional<single_file> control_file_;

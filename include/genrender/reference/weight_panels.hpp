@@ -4,16 +4,21 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/half_precision.hpp>
+#include <genrender/core/half_storage.hpp>
 #include <genrender/core/instance.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
+#include <genrender/reference/weight_storage.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <span>
+#include <utility>
+#include <variant>
 
 namespace genrender::reference {
 
@@ -51,9 +56,9 @@ struct panel_layout {
 };
 
 /// Weights in panels: of two registers of outputs after the other, inputs by outputs; the last one may have one.
-template <class Real>
+template <class Stored>
 struct panel_weights {
-    Real const* data;
+    Stored const* data;
     std::size_t inputs;
     std::size_t outputs;
 };
@@ -74,23 +79,23 @@ class weight_panels {
 public:
     weight_panels() = default;
 
-    /// Element (i, o) is `weight_of(i, o)`.
+    /// Element (i, o) is `weight_of(i, o)`, rounded to what it is kept in.
     template <class WeightOf>
-    weight_panels(std::size_t inputs, std::size_t outputs, WeightOf const& weight_of)
+    weight_panels(std::size_t inputs, std::size_t outputs, WeightOf const& weight_of,
+                  weight_storage storage = weight_storage::real)
         : target_(chosen_vector_target()), layout_(GENRENDER_KERNEL_OF(target_, internal, layout_of_panels<Real>)()),
-          inputs_(inputs), outputs_(outputs),
-          weights_(stack<Real, 1>::uninitialized(
-              {inputs * ((outputs + layout_.lanes - 1) / layout_.lanes * layout_.lanes)})) {
-        auto const lane = layout_.lanes;
-        auto const panel = 2 * lane;
-        auto* to = weights_.data();
-        for (std::size_t first = 0; first < outputs; first += panel) {
-            auto const width = outputs - first > lane ? panel : lane;
-            for (std::size_t i = 0; i < inputs; ++i) {
-                for (std::size_t o = first; o < first + width; ++o) {
-                    *to++ = o < outputs ? weight_of(i, o) : Real{0};
-                }
-            }
+          inputs_(inputs), outputs_(outputs) {
+        switch (storage) {
+        case weight_storage::float16:
+            fill<float16_bits>(weight_of,
+                               [](Real weight) { return float16_bits{half_of_float(static_cast<float>(weight))}; });
+            break;
+        case weight_storage::bfloat16:
+            fill<bfloat16_bits>(
+                weight_of, [](Real weight) { return bfloat16_bits{bfloat16_of_float(static_cast<float>(weight))}; });
+            break;
+        default:
+            fill<Real>(weight_of, [](Real weight) { return weight; });
         }
     }
 
@@ -102,6 +107,11 @@ public:
         return result;
     }
 
+    /// Bytes of memory that the weights take.
+    std::size_t bytes() const {
+        return std::visit([]<class Stored>(stack<Stored, 1> const& weights) { return weights.size() * sizeof(Stored); },
+                          weights_);
+    }
     /// Numbers of a token that it takes.
     std::size_t inputs() const { return inputs_; }
     /// Numbers of a token that it gives.
@@ -113,11 +123,28 @@ public:
                   any_loop const& loop = {}) const;
 
 private:
+    template <class Stored, class WeightOf, class Round>
+    void fill(WeightOf const& weight_of, Round const& round) {
+        auto const lane = layout_.lanes;
+        auto const panel = 2 * lane;
+        auto weights = stack<Stored, 1>::uninitialized({inputs_ * ((outputs_ + lane - 1) / lane * lane)});
+        auto* to = weights.data();
+        for (std::size_t first = 0; first < outputs_; first += panel) {
+            auto const width = outputs_ - first > lane ? panel : lane;
+            for (std::size_t i = 0; i < inputs_; ++i) {
+                for (std::size_t o = first; o < first + width; ++o) {
+                    *to++ = round(o < outputs_ ? weight_of(i, o) : Real{0});
+                }
+            }
+        }
+        weights_ = std::move(weights);
+    }
+
     vector_target target_ = vector_target::baseline;
     internal::panel_layout layout_{1, 1};
     std::size_t inputs_ = 0;
     std::size_t outputs_ = 0;
-    stack<Real, 1> weights_;
+    std::variant<stack<Real, 1>, stack<float16_bits, 1>, stack<bfloat16_bits, 1>> weights_;
 };
 
 template <class Real>
@@ -132,14 +159,18 @@ void weight_panels<Real>::multiply(strided_view<Real, 2> out, token_inputs<Real>
     auto const chunk = ((tokens + chunks - 1) / std::max<std::size_t>(chunks, 1) + rows - 1) / rows * rows;
     auto const columns = 8 * layout_.lanes; // of a thread's share
     auto const shares = (outputs_ + columns - 1) / columns;
-    auto const multiply_panels = GENRENDER_KERNEL_OF(target_, internal, multiply_panels<Real>);
-    loop(chunks * shares, [&](std::size_t i) {
-        auto const begin = std::min(tokens, i / shares * chunk);
-        auto const end = std::min(tokens, begin + chunk);
-        auto const first = i % shares * columns;
-        multiply_panels({weights_.data(), inputs_, outputs_}, out, in, terms, begin, end, first,
-                        std::min(outputs_, first + columns));
-    });
+    std::visit(
+        [&]<class Stored>(stack<Stored, 1> const& weights) {
+            auto const multiply_panels = GENRENDER_KERNEL_OF(target_, internal, multiply_panels<Real, Stored>);
+            loop(chunks * shares, [&](std::size_t i) {
+                auto const begin = std::min(tokens, i / shares * chunk);
+                auto const end = std::min(tokens, begin + chunk);
+                auto const first = i % shares * columns;
+                multiply_panels({weights.data(), inputs_, outputs_}, out, in, terms, begin, end, first,
+                                std::min(outputs_, first + columns));
+            });
+        },
+        weights_);
 }
 
 GENRENDER_CLASS_INSTANCE(weight_panels<float>);

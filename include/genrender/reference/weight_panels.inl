@@ -20,8 +20,8 @@ panel_layout layout_of_panels() {
 }
 
 /// A tile of `Rows` tokens by a panel of `Width` registers.
-template <std::size_t Rows, std::size_t Width, class Real>
-void run_tile(panel_weights<Real> const& weights_of, strided_view<Real, 2> const& out, token_inputs<Real> const& in,
+template <std::size_t Rows, std::size_t Width, class Real, class Stored>
+void run_tile(panel_weights<Stored> const& weights_of, strided_view<Real, 2> const& out, token_inputs<Real> const& in,
               product_terms<Real> const& terms, Real const* bias, std::size_t token, std::size_t first) {
     using vector = lanes<Real>;
     constexpr auto lane = lane_count<Real>;
@@ -44,7 +44,8 @@ void run_tile(panel_weights<Real> const& weights_of, strided_view<Real, 2> const
     for (std::size_t run = 0; run < in.runs; ++run) {
         for (std::size_t i = 0; i < in.run_length; ++i, weights += Width * lane) {
             vector weight[Width];
-            unrolled<Width>([&](auto w) GENRENDER_ALWAYS_INLINE { weight[w] = load(weights + w * lane); });
+            unrolled<Width>([&](auto w)
+                                GENRENDER_ALWAYS_INLINE { weight[w] = load_widened<Real>(weights + w * lane); });
             unrolled<Rows>([&](auto r) GENRENDER_ALWAYS_INLINE {
                 auto const x = spread(at[r][i]);
                 unrolled<Width>([&](auto w) GENRENDER_ALWAYS_INLINE { sum[r][w] += x * weight[w]; });
@@ -73,8 +74,8 @@ void run_tile(panel_weights<Real> const& weights_of, strided_view<Real, 2> const
 }
 
 /// Tokens [begin, end) by the panel that begins at output `first`.
-template <std::size_t Width, class Real>
-void run_panel(panel_weights<Real> const& weights_of, strided_view<Real, 2> const& out, token_inputs<Real> const& in,
+template <std::size_t Width, class Real, class Stored>
+void run_panel(panel_weights<Stored> const& weights_of, strided_view<Real, 2> const& out, token_inputs<Real> const& in,
                product_terms<Real> const& terms, std::size_t begin, std::size_t end, std::size_t first) {
     constexpr auto lane = lane_count<Real>;
     Real bias[2 * lane] = {};
@@ -94,8 +95,8 @@ void run_panel(panel_weights<Real> const& weights_of, strided_view<Real, 2> cons
 }
 
 /// Writes outputs [first, last) of tokens [begin, end), `first` being where a panel begins.
-template <class Real>
-void multiply_panels(panel_weights<Real> weights_of, strided_view<Real, 2> out, token_inputs<Real> const& in,
+template <class Real, class Stored>
+void multiply_panels(panel_weights<Stored> weights_of, strided_view<Real, 2> out, token_inputs<Real> const& in,
                      product_terms<Real> const& terms, std::size_t begin, std::size_t end, std::size_t first,
                      std::size_t last) {
     constexpr auto lane = lane_count<Real>;
