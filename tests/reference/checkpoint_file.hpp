@@ -81,7 +81,7 @@ inline std::map<std::string, std::string> stored_names(std::string const& networ
 /// The tensors that a network of ours takes, in a checkpoint's names.
 template <class Network>
 tensor_list stored_network(unet_config const& config, std::string const& network) {
-    auto source = weights<float>::seeded(1, "");
+    auto source = weights<float>::listing(5000, network);
     site_list sites({8, 8});
     Network const built(config, source, sites);
     auto const names = stored_names(network);

@@ -69,7 +69,7 @@ TEST_SUITE("reference/lora_file") {
         };
         constexpr auto unet = model_part::unet;
         constexpr auto text = model_part::text_encoder;
-        for (auto const& [down, up, part, name] :
+        for (auto const& expected :
              {form{"lora_unet_a_to_q.lora_down.weight", "lora_unet_a_to_q.lora_up.weight", unet, "a_to_q"},
               form{"lora_te_text_model_q.lora_down.weight", "lora_te_text_model_q.lora_up.weight", text,
                    "text_model_q"},
@@ -83,16 +83,16 @@ TEST_SUITE("reference/lora_file") {
                    "a.to_out.0"},
               form{"text_encoder.text_model.q.lora_linear_layer.down.weight",
                    "text_encoder.text_model.q.lora_linear_layer.up.weight", text, "text_model.q"}}) {
+            std::string const down = expected.down;
             CAPTURE(down);
             temporary_file const path("lora.safetensors");
-            write(path.path(), {{down, {4, 3}}, {up, {5, 4}}});
+            write(path.path(), {{down, {4, 3}}, {expected.up, {5, 4}}});
             lora_file const file(path.path());
             REQUIRE(file.modules().size() == 1);
             auto const& module = file.modules().front();
-            CHECK(module.part == part);
-            CHECK(module.name == name);
-            CHECK(module.is_underscored ==
-                  (std::string(down).find("lora_unet_") == 0 || std::string(down).find("lora_te_") == 0));
+            CHECK(module.part == expected.part);
+            CHECK(module.name == expected.name);
+            CHECK(module.is_underscored == (down.starts_with("lora_unet_") || down.starts_with("lora_te_")));
             CHECK(module.difference.down.shape == std::vector<std::size_t>{4, 3});
             CHECK(module.difference.up.shape == std::vector<std::size_t>{5, 4});
             CHECK(module.difference.factor == 1);
