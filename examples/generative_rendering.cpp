@@ -85,9 +85,11 @@ void run(render_options const& options, guidance_source const& source, diffusion
 /// Tells what a run will take. The exit code.
 int plan(render_options const& options, guidance_source const& source, diffusion_model& model,
          threaded_loop const& loop) {
-    auto const phi = model.network(source.guidance, source.image, loop);
-    auto const timed = with_canonical_maps(
-        options, source, [&](auto const& maps) { return plan_run(phi, maps, options.settings, loop.threads()); });
+    std::optional<reference_network<float>> phi;
+    auto const weights = resident_growth([&] { phi.emplace(model.network(source.guidance, source.image, loop)); });
+    auto timed = with_canonical_maps(
+        options, source, [&](auto const& maps) { return plan_run(*phi, maps, options.settings, loop.threads()); });
+    timed.weights_bytes = weights;
     write_plan(options.out, timed);
     std::cout << plan_text(timed);
     return 0;

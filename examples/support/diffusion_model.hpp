@@ -129,7 +129,10 @@ private:
             return reference_weights<float>::seeded(options.seed);
         }
         pipeline_files files(options.pipeline, options.controlnet,
-                             {.variant = options.variant, .prediction_type = options.prediction_type});
+                             {.variant = options.variant,
+                              .prediction_type = options.prediction_type,
+                              // Without instructions for them, weights of 16 bits take twice the time.
+                              .keeps_file_width = chosen_vector_target() != vector_target::baseline});
         for (auto const& [path, scale] : options.loras) {
             files.add_lora(path, scale);
         }

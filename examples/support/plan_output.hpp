@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,7 +27,8 @@ namespace genrender::examples {
 /// A plan, and what a call of the denoiser tells of the time.
 struct timed_plan {
     memory_plan plan;
-    double seconds_per_frame = 0; ///< of the denoiser alone, one frame a call and one call at a time
+    std::optional<std::int64_t> weights_bytes{}; ///< of the networks, held as long as the program runs
+    double seconds_per_frame = 0; ///< of the denoiser alone, one frame a call and one call at a time, on its threads
 };
 
 /// Calls the denoiser with frames of nothing to see what a call takes, and plans the run on these maps.
@@ -93,7 +95,8 @@ inline nlohmann::ordered_json plan_json(timed_plan const& timed) {
     json["mixed_bytes"] = work.mixed_bytes;
     json["noise_values"] = work.noise_values;
     json["normalized_bytes"] = work.normalized_bytes;
-    json["denoiser_seconds_of_one_thread"] = timed.seconds_per_frame * static_cast<double>(work.denoised_frames);
+    json["weights_bytes"] = timed.weights_bytes ? nlohmann::ordered_json(*timed.weights_bytes) : nullptr;
+    json["denoiser_seconds"] = timed.seconds_per_frame * static_cast<double>(work.denoised_frames);
     return json;
 }
 
@@ -104,6 +107,10 @@ inline std::string plan_text(timed_plan const& timed) {
         std::replace(name.begin(), name.end(), '_', ' ');
         name += name == "maps" ? " (held already)" : name == "peak" ? " (beyond the maps)" : "";
         memory.push_back({name, fixed_text(static_cast<double>(bytes) / 1e6, 2)});
+    }
+    if (timed.weights_bytes) {
+        memory.insert(memory.begin() + 1,
+                      {"networks (held already)", fixed_text(static_cast<double>(*timed.weights_bytes) / 1e6, 2)});
     }
     auto const& work = timed.plan.work;
     auto const seconds = timed.seconds_per_frame * static_cast<double>(work.denoised_frames);
@@ -116,7 +123,7 @@ inline std::string plan_text(timed_plan const& timed) {
                        {"features mixed, GB", fixed_text(work.mixed_bytes / 1e9, 3)},
                        {"noise, million values", fixed_text(work.noise_values / 1e6, 2)},
                        {"latents normalised, GB", fixed_text(work.normalized_bytes / 1e9, 3)},
-                       {"denoiser on one thread, s, about", fixed_text(seconds, 1)}});
+                       {"denoiser, minutes, about", fixed_text(seconds / 60, 2)}});
 }
 
 /// Writes plan.txt and plan.json into `folder`. Throws file_error if a file cannot be written.

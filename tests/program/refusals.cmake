@@ -32,6 +32,8 @@ file(COPY ${WEIGHTS} DESTINATION ${broken})
 file(WRITE ${broken}/weights/unet/diffusion_pytorch_model.safetensors "This is a letter and no weights at all.\n")
 file(WRITE ${broken}/maps/frame_0001.exr "This is a letter and not an image.\n")
 file(WRITE ${broken}/pictures/frame_0001.png "8 bits are not enough.\n")
+# A pickle begins so, in a zip or by itself.
+file(WRITE ${broken}/model.ckpt "PK\nno archive")
 file(WRITE ${broken}/file "A file where a folder should be.\n")
 
 # A sequence as Blender writes it.
@@ -40,6 +42,7 @@ execute_process(COMMAND ${MAPS_PROGRAM} walking_figure ${sequence} 3 256 OUTPUT_
 
 # 1: the arguments are fine and the work cannot be done; 2: the arguments are wrong.
 set(scene --scene camera_rotation)
+set(tiny ${CMAKE_CURRENT_LIST_DIR}/../data/tiny_pipeline)
 set(out --out ${FOLDER}/refused)
 refuses("a run without a prompt" 2 "--prompt" ${scene} ${out})
 refuses("a run without an input" 2 "--scene" --prompt dots ${out})
@@ -50,13 +53,30 @@ refuses("an unknown option" 2 "--colour" ${scene} --prompt dots ${out} --colour)
 refuses("zero frames" 2 "--frames" ${scene} --prompt dots ${out} --frames 0)
 refuses("more keyframes than frames" 2 "count is 9, expected 1 to the animation's 3 frames" ${scene} --prompt dots ${out}
     --frames 3 --keyframes 9)
-refuses("a size that the network cannot halve" 2 "height of the latents is 30" ${scene} --prompt dots ${out} --size 60)
+refuses("a size that the network cannot halve" 2 "--size: height is 60, expected a multiple of 8" ${scene} --prompt dots ${out} --size 60)
 refuses("an alpha above 1" 2 "--alpha" ${scene} --prompt dots ${out} --alpha 1.5)
 refuses("an alpha that is no number" 2 "--alpha" ${scene} --prompt dots ${out} --alpha nan)
 refuses("vectors that no processor has" 2 "--vectors" ${scene} --prompt dots ${out} --vectors v9)
 refuses("a negative seed" 2 "--seed" ${scene} --prompt dots ${out} --seed -1)
 refuses("maps that no machine can hold" 2 "half of the machine's memory" ${scene} --prompt dots ${out} --size 1048576)
-refuses("weights without a name" 2 "--weights" ${scene} --prompt dots ${out} --weights "")
+refuses("a pipeline without a name" 2 "--pipeline" ${scene} --prompt dots ${out} --pipeline "")
+refuses("a pipeline that is not there" 1 "there is nothing" ${scene} --prompt dots ${out} --pipeline ${FOLDER}/nowhere)
+refuses("a ControlNet that is not there" 1 "there is nothing" ${scene} --prompt dots ${out} --pipeline ${tiny}
+    --controlnet ${FOLDER}/nowhere)
+refuses("a tokenizer that is not there" 1 "vocab.json" ${scene} --prompt dots ${out} --pipeline ${tiny}
+    --tokenizer ${FOLDER}/nowhere)
+refuses("a variant that is not there" 1 "int4" ${scene} --prompt dots ${out} --pipeline ${tiny} --variant int4)
+refuses("a LoRA that is not there" 1 "nowhere" ${scene} --prompt dots ${out} --pipeline ${tiny} --lora ${FOLDER}/nowhere:0.5)
+refuses("a LoRA of no scale" 2 "--lora: scale is 'much'" ${scene} --prompt dots ${out} --pipeline ${tiny} --lora a:much)
+refuses("a pickle" 1 "pickle" ${scene} --prompt dots ${out} --pipeline ${broken}/model.ckpt)
+refuses("a network of a folder as a pipeline" 1 "one network of a diffusers folder" ${scene} --prompt dots ${out}
+    --pipeline ${tiny}/unet/diffusion_pytorch_model.safetensors)
+refuses("random weights and a LoRA" 2 "random has no files" ${scene} --prompt dots ${out} --pipeline random --lora a)
+refuses("all layers of the text encoder left out" 1 "skipped is 2, expected below the 2 layers" ${scene} --prompt dots
+    ${out} --pipeline ${tiny} --clip-skip 2)
+refuses("a width that the maps do not have" 2 "--width: width is 64" --maps ${sequence} --prompt dots ${out} --size 128
+    --width 64)
+refuses("a guidance that is none" 2 "--guidance" ${scene} --prompt dots ${out} --guidance strong)
 refuses("a sampler that is none" 2 "--sampler" ${scene} --prompt dots ${out} --sampler dice)
 refuses("settings of the method without the method" 2 "per_frame has no keyframes" ${scene} --prompt dots ${out}
     --method per_frame --no-post)
@@ -83,8 +103,8 @@ refuses("an environment of maps" 2 "--background: environment is of EXR maps" --
 refuses("a comparison with nothing" 1 "report.json: is no report of a run" ${scene} --prompt dots ${out}
     --beside ${broken})
 refuses("foreign weights" 1 "diffusion_pytorch_model.safetensors" ${scene} --prompt dots ${out} --frames 2
-    --weights ${broken}/weights)
-refuses("a folder without weights" 1 "unet" ${scene} --prompt dots ${out} --frames 2 --weights ${broken}/maps)
+    --pipeline ${broken}/weights)
+refuses("a folder without weights" 1 "unet" ${scene} --prompt dots ${out} --frames 2 --pipeline ${broken}/maps)
 refuses("an output folder that cannot be written" 1 "${broken}/file" ${scene} --prompt dots --out ${broken}/file)
 
 # What was written before a failure stays.
