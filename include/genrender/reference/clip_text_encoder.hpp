@@ -25,7 +25,7 @@ namespace genrender::reference {
 template <class Real>
 class clip_text_encoder {
 public:
-    /// Takes every tensor of transformers' CLIPTextModel from `source`, whose names begin with `text_model.` or, in files
+    /// Takes every tensor of transformers' CLIPTextModel from `source`, whose names begin with `text_model` or, in files
     /// of transformers 5, do not; `embeddings.position_ids`, which old files hold, may be left over. Throws value_error
     /// if the config cannot be built, file_error if a tensor is missing, misshapen or left over.
     clip_text_encoder(clip_text_config const& config, weights<Real>& source)

@@ -264,7 +264,7 @@ inline std::optional<renamed_tensors> diffusers_names(std::string_view name, com
 }
 
 /// Whether a tensor of a checkpoint is left over from training, or can be computed, or is of a part that makes no
-/// pictures: averages of the weights (`model_ema.`), noise schedules, losses, positions, projections for CLIP's score.
+/// pictures: averages of the weights (`model_ema`), noise schedules, losses, positions, projections for CLIP's score.
 inline bool is_training_leftover(std::string_view name) {
     static constexpr std::string_view beginnings[] = {"model_ema.", "first_stage_model.loss.", "posterior_",
                                                       "first_stage_model.model_ema.", "embedding_manager."};
