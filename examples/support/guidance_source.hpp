@@ -139,8 +139,9 @@ inline guidance_source load_guidance(render_options const& options, std::size_t 
             source.guidance.position = detail::first_frames(sequence.position, count);
         }
         source.image = detail::image_extents(uv.grid(), options.size);
-        require_value(options.width.value_or(source.image.width) == source.image.width, "--width", "width",
-                      *options.width, (std::to_string(source.image.width) + ", as the maps have it").c_str());
+        auto const width = options.width.value_or(source.image.width);
+        require_value(width == source.image.width, "--width", "width", width,
+                      (std::to_string(source.image.width) + ", as the maps have it").c_str());
     }
     detail::add_notes_on(source.notes, inspect(to_uv_view(source.guidance.uv)));
     // Texels have nowhere else to go; a footprint tells the tiles of a repeated texture apart.
