@@ -89,8 +89,11 @@ TEST_SUITE("reference/stable_diffusion") {
     TEST_CASE("frames by themselves are the pictures of diffusers, by Euler and DPM++ 2M with Karras' levels") {
         auto const golden = testing::golden_file("pipeline.json");
         stable_diffusion<float> const pipeline{pipeline_files(tiny_pipeline)};
-        for (auto const& [name, sampler] :
-             {std::pair("euler", sampler_kind::euler), {"dpmpp_2m", sampler_kind::dpmpp_2m}}) {
+        std::pair<std::string, sampler_kind> const runs[]{{"euler", sampler_kind::euler},
+                                                          {"dpmpp_2m", sampler_kind::dpmpp_2m}};
+        for (auto const& one : runs) {
+            auto const& name = one.first;
+            auto const sampler = one.second;
             CAPTURE(name);
             auto const pictures = rendered(golden, sampler, pipeline, golden["prompt"]);
             auto const [greatest, mean] = differences(pictures, golden["pictures"][name]);
