@@ -3,12 +3,19 @@
 takes it and what it needs: no picture of worth comes out.
 
 Needs Python 3.10 or later with PyTorch, diffusers 0.42.1, transformers 5.24.0 and open_clip (for CLIP's vocabulary), 8 GB of
-memory and 3 GB of disk:
+memory and 6 GB of disk:
 
     cmake --workflow --preset demo
     python3 tests/reference/full_size_pipeline.py FOLDER
     /usr/bin/time -v build/demo/examples/generative_rendering --pipeline FOLDER --scene camera_rotation --frames 1 --steps 2 \
         --prompt "any words" --out FOLDER/out
+
+The same weights stand in FOLDER/model.safetensors and FOLDER/control.safetensors, as single files in the names of the original
+releases, of which the program makes the same frames to the bit:
+
+    build/demo/examples/generative_rendering --pipeline FOLDER/model.safetensors --controlnet FOLDER/control.safetensors \
+        --tokenizer FOLDER/tokenizer --scene camera_rotation --frames 1 --steps 2 --prompt "any words" --out FOLDER/out_of_files
+    cmp FOLDER/out/frames/0000.png FOLDER/out_of_files/frames/0000.png
 """
 
 import gc
@@ -19,6 +26,7 @@ import sys
 import torch
 from clip_tokenizer_parity import clip_merges, clip_vocabulary
 from diffusers import AutoencoderKL, ControlNetModel, UNet2DConditionModel
+from safetensors.torch import load_file, save_file
 from transformers import CLIPTextConfig, CLIPTextModel
 
 
@@ -26,6 +34,33 @@ def write(model, folder):
     """In half precision, as most people have it."""
     model.half().save_pretrained(folder)
     gc.collect()
+
+
+def stored_in_original_names(folder, part, stem, pairs):
+    """The tensors of a network by their names in single files."""
+    tensors = load_file(folder / part / f"{stem}.safetensors")
+    if part == "text_encoder" and "text_model.final_layer_norm.weight" not in tensors:
+        tensors = {f"text_model.{name}": tensor for name, tensor in tensors.items()}
+    result = {}
+    for original, name, kinds, _ in pairs:
+        for kind in kinds:
+            end = {"w": "weight", "b": "bias"}[kind]
+            tensor = tensors[name + end]
+            if ".attn_1." in original and kind == "w" and not original.endswith("norm."):
+                tensor = tensor[:, :, None, None]  # 1 x 1 kernels
+            result[original + end] = tensor.contiguous()
+    return result
+
+
+def write_single_files(folder):
+    names = json.loads((pathlib.Path(__file__).parent.parent / "data" / "compvis_names.json").read_text())
+    model = {"alphas_cumprod": torch.zeros(1000)}  # left over from training, as in the originals
+    for part, stem, key in (("unet", "diffusion_pytorch_model", "unet"), ("vae", "diffusion_pytorch_model", "vae"),
+                            ("text_encoder", "model", "clip")):
+        model.update(stored_in_original_names(folder, part, stem, names[key]["pairs"]))
+    save_file(model, folder / "model.safetensors")
+    control = stored_in_original_names(folder, "controlnet", "diffusion_pytorch_model", names["controlnet"]["pairs"])
+    save_file(control, folder / "control.safetensors")
 
 
 def main():
@@ -53,6 +88,7 @@ def main():
     tokenizer.mkdir(exist_ok=True)
     (tokenizer / "vocab.json").write_text(json.dumps(clip_vocabulary(merges)), encoding="utf-8")
     (tokenizer / "merges.txt").write_text("#version: 0.2\n" + "\n".join(merges) + "\n", encoding="utf-8")
+    write_single_files(folder)
 
 
 if __name__ == "__main__":

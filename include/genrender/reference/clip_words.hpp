@@ -76,7 +76,8 @@ inline std::vector<std::u32string_view> clip_words(std::u32string_view cleaned) 
             words.push_back(rest.substr(2 + name, 2));
             i += name + 4;
             continue;
-        } else if (auto const ending = internal::clip_ending(rest); ending > 0) {
+        }
+        if (auto const ending = internal::clip_ending(rest); ending > 0) {
             length = ending;
         } else if (is_letter(rest.front())) {
             length = run(is_letter);
