@@ -27,8 +27,8 @@ namespace genrender::examples {
 /// A plan, and what a call of the denoiser tells of the time.
 struct timed_plan {
     memory_plan plan;
-    std::optional<std::int64_t> weights_bytes{}; ///< of the networks, held as long as the program runs
     double seconds_per_frame = 0; ///< of the denoiser alone, one frame a call and one call at a time, on its threads
+    std::optional<std::int64_t> weights_bytes{}; ///< of the networks, held as long as the program runs
 };
 
 /// Calls the denoiser with frames of nothing to see what a call takes, and plans the run on these maps.

@@ -44,10 +44,10 @@ def stored_in_original_names(folder, part, stem, pairs):
     result = {}
     for original, name, kinds, _ in pairs:
         for kind in kinds:
-            end = {"w": "weight", "b": "bias"}[kind]
+            end = "bias" if kind == "b" else "weight"
             tensor = tensors[name + end]
-            if ".attn_1." in original and kind == "w" and not original.endswith("norm."):
-                tensor = tensor[:, :, None, None]  # 1 x 1 kernels
+            if kind == "m":
+                tensor = tensor[:, :, None, None]  # the originals have 1 x 1 kernels for these matrices
             result[original + end] = tensor.contiguous()
     return result
 

@@ -4,6 +4,9 @@
 
 #include "checkpoint_file.hpp"
 
+#include <genrender/reference/autoencoder_config.hpp>
+#include <genrender/reference/clip_text_config.hpp>
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -125,6 +128,8 @@ TEST_SUITE("reference/single_file") {
         CHECK(options["latent_channels"] == 4);
         CHECK(options["in_channels"] == 3);
         CHECK(options["scaling_factor"] == 0.18215);
+        CHECK(read_autoencoder_config(file.options(model_part::vae)).block_out_channels ==
+              std::vector<std::size_t>{32, 32, 32, 32});
     }
 
     TEST_CASE("OpenCLIP's fused matrices come apart and its last layer is left") {
@@ -158,6 +163,7 @@ TEST_SUITE("reference/single_file") {
         CHECK(options["hidden_size"] == 64);
         CHECK(options["intermediate_size"] == 256);
         CHECK(options["vocab_size"] == 10);
+        CHECK(read_clip_text_config(file.options(model_part::text_encoder)).hidden_act == clip_activation::gelu);
         CHECK(refusal(tensors.add(head + "transformer.resblocks.0.attn.in_proj_bias", {191})) ==
               "tensor cond_stage_model.model.transformer.resblocks.0.attn.in_proj_bias is [191], expected rows of "
               "queries, keys and values");
@@ -180,6 +186,7 @@ TEST_SUITE("reference/single_file") {
         CHECK(options["num_hidden_layers"] == 3);
         CHECK(options["num_attention_heads"] == 2);
         CHECK(options["hidden_act"] == "quick_gelu");
+        CHECK(read_clip_text_config(file.options(model_part::text_encoder)).num_hidden_layers == 3);
         CHECK_THROWS_WITH_AS(file.options(model_part::vae), (path.path() + ": file holds no VAE, expected one").c_str(),
                              file_error);
     }

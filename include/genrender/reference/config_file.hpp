@@ -165,7 +165,7 @@ private:
     bool is_absent(std::string const& option) const { return !options_.contains(option); }
 
     static bool is_count(nlohmann::json const& value) {
-        return value.is_number_unsigned() && value > 0U && value <= 1000000U;
+        return value.is_number_integer() && value > 0 && value <= 1000000;
     }
 
     static std::string shortened(std::string const& text) {
