@@ -10,6 +10,7 @@ from training_run import TrainingRun
 
 LATENT_CHANNELS = 8
 CROP = 64
+PICTURES = 16384  # of those that there are, the first
 
 
 def new_autoencoder():
@@ -67,7 +68,7 @@ def train_autoencoder(pictures, held_out, out, steps, seed, precision, compiled,
     judged = held_out.colours_of(numpy.arange(min(64, len(held_out))))
 
     def loss_of(random, generator):
-        numbers = numpy.sort(random.choice(len(pictures), batch, replace=False))
+        numbers = numpy.sort(random.choice(min(PICTURES, len(pictures)), batch, replace=False))
         top, left = random.integers(0, 128 - CROP + 1, (2, batch))
         crops = numpy.stack([pictures.images[n, y:y + CROP, x:x + CROP] for n, y, x in zip(numbers, top, left)])
         images = torch.from_numpy(crops).permute(0, 3, 1, 2).float() / 127.5 - 1

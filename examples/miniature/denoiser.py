@@ -17,7 +17,7 @@ from training_run import TrainingRun
 
 TEXT_CHANNELS = 64
 SHAPE = dict(
-    in_channels=LATENT_CHANNELS, block_out_channels=(64, 96, 128), layers_per_block=1, attention_head_dim=(2, 3, 4),
+    in_channels=LATENT_CHANNELS, block_out_channels=(48, 96, 96), layers_per_block=1, attention_head_dim=(1, 3, 3),
     cross_attention_dim=TEXT_CHANNELS, norm_num_groups=8,
     down_block_types=("CrossAttnDownBlock2D", "CrossAttnDownBlock2D", "DownBlock2D"))
 
@@ -36,7 +36,7 @@ class Denoiser(torch.nn.Module):
             sample_size=32, out_channels=LATENT_CHANNELS,
             up_block_types=("UpBlock2D", "CrossAttnUpBlock2D", "CrossAttnUpBlock2D"), **SHAPE)
         self.controlnet = ControlNetModel(
-            conditioning_channels=3, conditioning_embedding_out_channels=(16, 32, 64), **SHAPE)
+            conditioning_channels=3, conditioning_embedding_out_channels=(8, 16, 32), **SHAPE)
         # A ControlNet that joins a trained UNet begins at zero, so as not to disturb it. Here nothing is trained yet.
         for name, parameter in self.controlnet.named_parameters():
             if name.startswith(("controlnet_down_blocks", "controlnet_mid_block", "controlnet_cond_embedding.conv_out")):

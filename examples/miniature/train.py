@@ -36,7 +36,7 @@ def main():
     parser.add_argument("--make-pictures", type=pathlib.Path, help="the program of that name")
     parser.add_argument("--until", choices=STAGES, default=STAGES[-1], help="the last stage to run")
     parser.add_argument("--pictures", type=int, default=40000)
-    parser.add_argument("--vae-steps", type=int, default=12000)
+    parser.add_argument("--vae-steps", type=int, default=5000)
     parser.add_argument("--steps", type=int, default=8000, help="of the denoiser")
     parser.add_argument("--batch", type=int, default=64, help="of the denoiser")
     parser.add_argument("--rate", type=float, default=1.5e-3, help="highest learning rate of the denoiser")

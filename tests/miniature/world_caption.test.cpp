@@ -4,8 +4,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <sstream>
+#include <string>
 
 using namespace genrender::examples::miniature;
 

@@ -66,7 +66,7 @@ TEST_SUITE("miniature/world_colours") {
                     auto const first = static_cast<world_colour>(a);
                     auto const second = static_cast<world_colour>(b);
                     CHECK(is_held_out(pattern, first, second) == is_held_out(pattern, second, first));
-                    held_out += is_held_out(pattern, first, second) ? 1 : 0;
+                    held_out += is_held_out(pattern, first, second) ? 1U : 0U;
                     if (is_held_out(pattern, first, second)) {
                         of_pattern.insert(a);
                     }
