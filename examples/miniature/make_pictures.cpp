@@ -118,7 +118,7 @@ void write_sheet(std::filesystem::path const& path, block const& examples) {
 int run(int argc, char** argv) {
     CLI::App app("Writes pictures of a small invented world with their inverse depth and captions, to train on.");
     std::filesystem::path folder;
-    std::size_t count = 40000;
+    std::size_t count = 32768;
     picture_request request;
     auto is_held_out = false;
     auto says_all = false;

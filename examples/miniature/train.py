@@ -17,6 +17,7 @@ from autoencoder import train_autoencoder
 from caption_tokenizer import write_tokenizer
 from denoiser import train_denoiser
 from pictures import Pictures
+from training_run import keep_freed_memory
 
 STAGES = ("data", "vae", "tokenizer", "denoiser")
 
@@ -35,11 +36,11 @@ def main():
     parser.add_argument("--out", required=True, type=pathlib.Path, help="folder of weights, pictures and checkpoints")
     parser.add_argument("--make-pictures", type=pathlib.Path, help="the program of that name")
     parser.add_argument("--until", choices=STAGES, default=STAGES[-1], help="the last stage to run")
-    parser.add_argument("--pictures", type=int, default=40000)
+    parser.add_argument("--pictures", type=int, default=32768)
     parser.add_argument("--vae-steps", type=int, default=5000)
-    parser.add_argument("--steps", type=int, default=8000, help="of the denoiser")
-    parser.add_argument("--batch", type=int, default=64, help="of the denoiser")
-    parser.add_argument("--rate", type=float, default=1.5e-3, help="highest learning rate of the denoiser")
+    parser.add_argument("--steps", type=int, default=20000, help="of the denoiser")
+    parser.add_argument("--batch", type=int, default=32, help="of the denoiser")
+    parser.add_argument("--rate", type=float, default=1e-3, help="highest learning rate of the denoiser")
     parser.add_argument("--every", type=int, default=100, help="steps between two lines of progress")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--threads", type=int, default=0, help="0 = all of the machine")
@@ -51,6 +52,7 @@ def main():
     out, last = arguments.out, STAGES.index(arguments.until)
     out.mkdir(parents=True, exist_ok=True)
     precision = getattr(torch, arguments.precision)
+    keep_freed_memory()
 
     pictures = make_pictures(arguments.make_pictures, out / "pictures", arguments.pictures, arguments.seed + 1)
     held_out = make_pictures(arguments.make_pictures, out / "held_out", 1000, arguments.seed + 2, "--held-out",

@@ -2,11 +2,25 @@
 """What the trainings share: weights in two precisions, a schedule of the learning rate, checkpoints, a line of progress."""
 
 import csv
+import ctypes
 import math
 import time
 
 import numpy
 import torch
+
+
+def keep_freed_memory():
+    """Lets glibc keep what is freed for the next step, where a tenth of the time would go to new pages; elsewhere
+    nothing."""
+    try:
+        glibc = ctypes.CDLL("libc.so.6")
+        trim_threshold, top_pad, mmap_threshold = -1, -2, -3
+        glibc.mallopt(mmap_threshold, 1 << 25)
+        glibc.mallopt(trim_threshold, 2**31 - 1)
+        glibc.mallopt(top_pad, 1 << 28)
+    except (OSError, AttributeError):
+        pass
 
 
 def save_atomically(what, path):
