@@ -8,6 +8,7 @@
 #include <glm/ext/matrix_transform.hpp>
 
 using namespace genrender;
+using namespace genrender::examples;
 using namespace genrender::examples::miniature;
 
 namespace {

@@ -10,6 +10,7 @@
 #include <cmath>
 
 using namespace genrender;
+using namespace genrender::examples;
 using namespace genrender::examples::miniature;
 
 namespace {

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+using namespace genrender::examples;
 using namespace genrender::examples::miniature;
 
 namespace {

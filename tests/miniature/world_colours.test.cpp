@@ -6,6 +6,7 @@
 
 #include <set>
 
+using namespace genrender::examples;
 using namespace genrender::examples::miniature;
 
 TEST_SUITE("miniature/world_colours") {

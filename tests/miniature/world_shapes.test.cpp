@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 using namespace genrender;
+using namespace genrender::examples;
 using namespace genrender::examples::miniature;
 
 TEST_SUITE("miniature/world_shapes") {
