@@ -215,6 +215,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/activation.inl
     reference/attention_matrices.hpp
     reference/autoencoder_config.hpp
+    reference/autoencoder_config_file.hpp
     reference/autoencoder_kl.hpp
     reference/byte_pair_encoding.hpp
     reference/byte_pair_files.hpp
@@ -222,6 +223,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/clip_added_tokens.hpp
     reference/clip_declarations.hpp
     reference/clip_text_config.hpp
+    reference/clip_text_config_file.hpp
     reference/clip_text_encoder.hpp
     reference/clip_text_layer.hpp
     reference/clip_tokenizer.hpp
@@ -245,6 +247,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/layer_norm.hpp
     reference/layer_norm.inl
     reference/linear.hpp
+    reference/lora_difference.hpp
     reference/lora_file.hpp
     reference/lora_merge.hpp
     reference/map_stripes.hpp
@@ -261,12 +264,14 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/resampler.hpp
     reference/resnet_block.hpp
     reference/safetensors.hpp
+    reference/safetensors_weights.hpp
     reference/seeded_tensor.hpp
     reference/single_file.hpp
     reference/site_list.hpp
     reference/spare_map.hpp
     reference/spatial_transformer.hpp
     reference/stable_diffusion.hpp
+    reference/tensor_file.hpp
     reference/tensor_place.hpp
     reference/time_embedding.hpp
     reference/transformer_block.hpp

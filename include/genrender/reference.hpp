@@ -5,6 +5,7 @@
 #include <genrender/reference/activation.hpp>
 #include <genrender/reference/attention_matrices.hpp>
 #include <genrender/reference/autoencoder_config.hpp>
+#include <genrender/reference/autoencoder_config_file.hpp>
 #include <genrender/reference/autoencoder_kl.hpp>
 #include <genrender/reference/byte_pair_encoding.hpp>
 #include <genrender/reference/byte_pair_files.hpp>
@@ -12,6 +13,7 @@
 #include <genrender/reference/clip_added_tokens.hpp>
 #include <genrender/reference/clip_declarations.hpp>
 #include <genrender/reference/clip_text_config.hpp>
+#include <genrender/reference/clip_text_config_file.hpp>
 #include <genrender/reference/clip_text_encoder.hpp>
 #include <genrender/reference/clip_text_layer.hpp>
 #include <genrender/reference/clip_tokenizer.hpp>
@@ -33,6 +35,7 @@
 #include <genrender/reference/haar.hpp>
 #include <genrender/reference/layer_norm.hpp>
 #include <genrender/reference/linear.hpp>
+#include <genrender/reference/lora_difference.hpp>
 #include <genrender/reference/lora_file.hpp>
 #include <genrender/reference/lora_merge.hpp>
 #include <genrender/reference/map_stripes.hpp>
@@ -49,12 +52,14 @@
 #include <genrender/reference/resampler.hpp>
 #include <genrender/reference/resnet_block.hpp>
 #include <genrender/reference/safetensors.hpp>
+#include <genrender/reference/safetensors_weights.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
 #include <genrender/reference/single_file.hpp>
 #include <genrender/reference/site_list.hpp>
 #include <genrender/reference/spare_map.hpp>
 #include <genrender/reference/spatial_transformer.hpp>
 #include <genrender/reference/stable_diffusion.hpp>
+#include <genrender/reference/tensor_file.hpp>
 #include <genrender/reference/tensor_place.hpp>
 #include <genrender/reference/time_embedding.hpp>
 #include <genrender/reference/transformer_block.hpp>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Builds and runs the toy programs of COMPONENTS in BUILD in one WAY: find_package, add_subdirectory or pkg_config; without
-# the packages of other components. Run with cmake -P.
+# the packages of other components. WITH_INSTANCES: and one that compiles the instances apart. Run with cmake -P.
 cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/cmake/components.cmake)
 file(REMOVE_RECURSE ${BUILD})
@@ -19,7 +19,7 @@ if(WAY STREQUAL "pkg_config")
     endforeach()
 else()
     if(WAY STREQUAL "find_package")
-        set(where -D CMAKE_PREFIX_PATH=${PREFIX} -D WITH_INSTANCES=ON)
+        set(where -D CMAKE_PREFIX_PATH=${PREFIX} -D WITH_INSTANCES=${WITH_INSTANCES})
     else()
         set(where -D GENRENDER_SOURCE_DIR=${SOURCE})
     endif()
@@ -41,7 +41,7 @@ else()
 endif()
 
 set(programs ${COMPONENTS})
-if(WAY STREQUAL "find_package")
+if(WITH_INSTANCES)
     list(APPEND programs compiled)
 endif()
 foreach(program IN LISTS programs)

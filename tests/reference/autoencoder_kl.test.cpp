@@ -5,6 +5,9 @@
 #include "golden_network.hpp"
 #include "small_networks.hpp"
 
+#include <genrender/reference/autoencoder_config_file.hpp>
+#include <genrender/reference/safetensors_weights.hpp>
+
 #include <genrender/core/parallel.hpp>
 
 #include <doctest/doctest.h>
@@ -48,7 +51,7 @@ TEST_SUITE("reference/autoencoder_kl") {
     autoencoder_kl<Real> built(vae_model const& model, std::string const& path,
                                autoencoder_parts parts = autoencoder_parts::both) {
         write_safetensors(path, model.sources);
-        auto source = weights<Real>::from_file(path);
+        auto source = read_weights<Real>(path);
         return {model.config, source, parts};
     }
 

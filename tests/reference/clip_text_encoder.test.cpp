@@ -5,6 +5,9 @@
 #include "golden_network.hpp"
 #include "small_networks.hpp"
 
+#include <genrender/reference/clip_text_config_file.hpp>
+#include <genrender/reference/safetensors_weights.hpp>
+
 #include <genrender/core/parallel.hpp>
 
 #include <doctest/doctest.h>
@@ -55,7 +58,7 @@ TEST_SUITE("reference/clip_text_encoder") {
     template <class Real>
     clip_text_encoder<Real> built(text_model const& model, std::string const& path) {
         write_safetensors(path, model.sources);
-        auto source = weights<Real>::from_file(path);
+        auto source = read_weights<Real>(path);
         return {model.config, source};
     }
 

@@ -78,7 +78,7 @@ bool run(std::string const& what, std::filesystem::path const& folder, any_loop 
     safetensors_file const data((folder / "ends.safetensors").string());
     if (what == "text") {
         auto const config = read_clip_text_config(config_file(folder / "text_encoder" / "config.json"));
-        auto source = weights<float>::from_files(safetensors_paths(folder / "text_encoder", "model"));
+        auto source = weights<float>::from_places(find_weights(folder / "text_encoder", "model"), folder.string());
         clip_text_encoder<float> const encoder(config, source);
         std::vector<std::uint32_t> ids;
         for (auto const id : data.read<float>("ids")) {
@@ -88,7 +88,7 @@ bool run(std::string const& what, std::filesystem::path const& folder, any_loop 
         return compare(rows.data(), data.read<float>("text"), 1e-5f);
     }
     auto const config = read_autoencoder_config(config_file(folder / "vae" / "config.json"));
-    auto source = weights<float>::from_files(safetensors_paths(folder / "vae", "diffusion_pytorch_model"));
+    auto source = weights<float>::from_places(find_weights(folder / "vae", "diffusion_pytorch_model"), folder.string());
     auto const is_encode = what == "encode";
     autoencoder_kl<float> const vae(config, source, is_encode ? autoencoder_parts::both : autoencoder_parts::decoder);
     stripe_pass const pass{loop, stripe_bytes};

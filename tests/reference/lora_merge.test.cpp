@@ -5,7 +5,7 @@
 #include "../support/golden_file.hpp"
 #include "golden_network.hpp"
 
-#include <genrender/reference/weights.hpp>
+#include <genrender/reference/safetensors_weights.hpp>
 
 #include <doctest/doctest.h>
 
@@ -47,9 +47,9 @@ TEST_SUITE("reference/lora_merge") {
         temporary_file const lora_path("lora.safetensors");
         write_safetensors(base_path.path(), base.sources);
         write_safetensors(lora_path.path(), lora.sources);
-        auto source = weights<float>::from_file(base_path.path());
+        auto source = read_weights<float>(base_path.path());
         try {
-            source.add_lora(lora_file(lora_path.path()), part);
+            add_lora(source, lora_file(lora_path.path()), part);
         } catch (file_error const& error) {
             return std::string(error.what()).substr(lora_path.path().size() + 2);
         }
@@ -98,8 +98,8 @@ TEST_SUITE("reference/lora_merge") {
             temporary_file const lora_path("lora.safetensors");
             write_safetensors(base_path.path(), base.sources);
             write_safetensors(lora_path.path(), lora.sources);
-            auto source = weights<Real>::from_file(base_path.path());
-            source.add_lora(lora_file(lora_path.path()), model_part::unet, golden.at("scale").get<double>());
+            auto source = read_weights<Real>(base_path.path());
+            add_lora(source, lora_file(lora_path.path()), model_part::unet, golden.at("scale").get<double>());
             auto const& fused = golden.at("fused").at(form == "kohya" ? "kohya" : "peft");
             for (auto const& module : golden.at("modules")) {
                 auto const name = module.at("name").get<std::string>();
@@ -124,10 +124,10 @@ TEST_SUITE("reference/lora_merge") {
         write_safetensors(lora_path.path(),
                           {{"unet.a.lora_A.weight", {{1, 2}, down}}, {"unet.a.lora_B.weight", {{2, 1}, up}}});
         lora_file const lora(lora_path.path());
-        auto source = weights<float>::from_file(base_path.path());
-        source.add_lora(lora, model_part::unet, 1);
-        source.add_lora(lora, model_part::unet, -0.5);
-        source.add_lora(lora, model_part::text_encoder, 1);
+        auto source = read_weights<float>(base_path.path());
+        add_lora(source, lora, model_part::unet, 1);
+        add_lora(source, lora, model_part::unet, -0.5);
+        add_lora(source, lora, model_part::text_encoder, 1);
         CHECK(source.take("a.weight", {2, 2}) == std::vector<float>{2.5f, 4, 3, 5});
         CHECK(source.take("b.weight", {2, 2}) == ones);
         CHECK(source.values().at("a.weight") == std::vector<float>{2.5f, 4, 3, 5});
@@ -180,11 +180,14 @@ TEST_SUITE("reference/lora_merge") {
         lora.add("unet.a.lora_B.weight", {2, 1}, "z");
         write_safetensors(lora_path.path(), lora.sources);
         auto seeded = weights<float>::seeded(1, "unet");
-        CHECK_THROWS_WITH_AS(seeded.add_lora(lora_file(lora_path.path()), model_part::unet),
-                             "weights: tensors is random, expected of files, where a LoRA is to be merged",
+        CHECK_THROWS_WITH_AS(add_lora(seeded, lora_file(lora_path.path()), model_part::unet),
+                             "add_lora: tensors is random, expected of files, where a LoRA is to be merged",
                              value_error);
-        write_safetensors(base_path.path(), lora.sources);
-        auto source = weights<float>::from_file(base_path.path());
-        CHECK_THROWS_AS(source.add_lora(lora_file(lora_path.path()), model_part::unet, std::nan("")), value_error);
+        tensor_writer base;
+        base.add("a.weight", {2, 3}, "x");
+        write_safetensors(base_path.path(), base.sources);
+        auto source = read_weights<float>(base_path.path());
+        CHECK_THROWS_WITH_AS(add_lora(source, lora_file(lora_path.path()), model_part::unet, std::nan("")),
+                             "weights: scale is nan, expected a finite number", value_error);
     }
 }

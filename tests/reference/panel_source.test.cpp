@@ -4,6 +4,8 @@
 
 #include "small_networks.hpp"
 
+#include <genrender/reference/safetensors_weights.hpp>
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -40,7 +42,7 @@ TEST_SUITE("reference/panel_source") {
         auto const values = random_stack<float, 1>({35}, 3);
         write_safetensors(path.path(), {{"w", {{5, 7}, std::span(values.data(), 35)}}}, safetensors_storage::f16);
         auto const panels_of_file = [&](bool keep) {
-            auto source = weights<float>::from_file(path.path());
+            auto source = read_weights<float>(path.path());
             source.keep_file_width(keep);
             return take_panels(source, "w", {5, 7}, 7, 5, [](std::size_t i, std::size_t o) { return o * 7 + i; });
         };
@@ -59,7 +61,7 @@ TEST_SUITE("reference/panel_source") {
         temporary_file const path("full.safetensors");
         auto const values = random_stack<float, 1>({35}, 3);
         write_safetensors(path.path(), {{"w", {{5, 7}, std::span(values.data(), 35)}}});
-        auto source = weights<float>::from_file(path.path());
+        auto source = read_weights<float>(path.path());
         source.keep_file_width();
         CHECK(source.storage_of("w") == weight_storage::real);
         CHECK(source.storage_of("none") == weight_storage::real);

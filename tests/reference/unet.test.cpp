@@ -8,6 +8,7 @@
 
 #include <genrender/reference/controlnet.hpp>
 #include <genrender/reference/diffusers_folder.hpp>
+#include <genrender/reference/safetensors_weights.hpp>
 
 #include <doctest/doctest.h>
 
@@ -100,7 +101,7 @@ TEST_SUITE("reference/unet") {
             }
             change(sources);
             write_safetensors(file.path(), sources);
-            auto loaded = weights<float>::from_file(file.path());
+            auto loaded = read_weights<float>(file.path());
             site_list more({4, 4});
             unet<float> const network(config, loaded, more);
         };

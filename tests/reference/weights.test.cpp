@@ -4,6 +4,8 @@
 
 #include "small_networks.hpp"
 
+#include <genrender/reference/safetensors_weights.hpp>
+
 #include <doctest/doctest.h>
 
 #include <vector>
@@ -27,24 +29,12 @@ TEST_SUITE("reference/weights") {
         CHECK_NOTHROW(first.require_all_taken());
     }
 
-    TEST_CASE_TEMPLATE("a saved store gives equal tensors", Real, float, double) {
-        temporary_file const file("store.safetensors");
-        auto seeded = weights<Real>::seeded(4, "unet");
-        auto const a = seeded.take("a.weight", {3, 2, 3, 3});
-        auto const bias = seeded.take("a.bias", {3});
-        seeded.save(file.path());
-        auto loaded = weights<Real>::from_file(file.path());
-        CHECK(loaded.take("a.weight", {3, 2, 3, 3}) == a);
-        CHECK(loaded.take("a.bias", {3}) == bias);
-        CHECK_NOTHROW(loaded.require_all_taken());
-    }
-
     TEST_CASE("a missing or misshapen tensor is named and so are those left over") {
         temporary_file const file("errors.safetensors");
         std::vector<float> const one{1.0f};
         write_safetensors(file.path(), {{"x.a", {{1}, one}}, {"x.b", {{1, 1}, one}}, {"y.c", {{1}, one}}});
         auto const text = [&](std::string const& sentence) { return file.path() + ": " + sentence; };
-        auto store = weights<float>::from_file(file.path());
+        auto store = read_weights<float>(file.path());
         CHECK_THROWS_WITH_AS(store.take("x.c", {1, 2}),
                              text("there is no tensor x.c, expected one of shape [1, 2]").c_str(), file_error);
         CHECK_THROWS_WITH_AS(store.take("x.b", {1}), text("tensor x.b is [1, 1], expected [1]").c_str(), file_error);
@@ -57,7 +47,7 @@ TEST_SUITE("reference/weights") {
         temporary_file const file("left.safetensors");
         std::vector<float> const one{1.0f};
         write_safetensors(file.path(), {{"x.a", {{1}, one}}, {"x.b", {{1}, one}}, {"y.c", {{1}, one}}});
-        auto store = weights<float>::from_file(file.path());
+        auto store = read_weights<float>(file.path());
         CHECK(store.holds("x.a"));
         CHECK(!store.holds("x"));
         CHECK(!weights<float>::seeded(1, "").holds("x.a"));
@@ -67,32 +57,6 @@ TEST_SUITE("reference/weights") {
         store.leave("y.c");
         CHECK_NOTHROW(store.require_all_taken());
         CHECK(store.taken().empty());
-    }
-
-    TEST_CASE_TEMPLATE("the shards of a network are one store", Real, float, double) {
-        temporary_file const first("first.safetensors");
-        temporary_file const second("second.safetensors");
-        std::vector<float> const one{1.0f};
-        std::vector<float> const two{2.0f};
-        write_safetensors(first.path(), {{"a", {{1}, one}}, {"c", {{1}, two}}});
-        write_safetensors(second.path(), {{"b", {{1}, two}}});
-        auto store = weights<Real>::from_files({first.path(), second.path()});
-        CHECK(store.take("b", {1}) == std::vector<Real>{2});
-        CHECK(store.take("a", {1}) == std::vector<Real>{1});
-        CHECK_THROWS_WITH_AS(store.take("b", {2}), (second.path() + ": tensor b is [1], expected [2]").c_str(),
-                             file_error);
-        CHECK_THROWS_WITH_AS(store.take("d", {1}),
-                             (first.path() + ": there is no tensor d, expected one of shape [1]").c_str(), file_error);
-        CHECK_THROWS_WITH_AS(store.require_all_taken(),
-                             (first.path() + ": 1 tensors have no place in the network: c, expected none").c_str(),
-                             file_error);
-        CHECK_THROWS_WITH_AS(weights<Real>::from_files({}), "weights: paths is empty, expected at least one",
-                             value_error);
-        write_safetensors(second.path(), {{"a", {{1}, two}}});
-        CHECK_THROWS_WITH_AS(
-            weights<Real>::from_files({first.path(), second.path()}),
-            (second.path() + ": tensor a is in " + first.path() + " too, expected each tensor once").c_str(),
-            file_error);
     }
 
     TEST_CASE("a listing is asked for no more than it should be and gives nothing") {
@@ -116,7 +80,7 @@ TEST_SUITE("reference/weights") {
             source.take("x.b", {1});
             source.take("x.c", {1, 2});
         };
-        CHECK_THROWS_WITH_AS(require_tensors(weights<float>::from_file(file.path()), network),
+        CHECK_THROWS_WITH_AS(require_tensors(read_weights<float>(file.path()), network),
                              (file.path() + ": 1 tensors are missing: x.c [1, 2]; 1 tensors have another shape: x.b is "
                                             "[1, 1] where [1] is asked for; 1 tensors have no place in the network: "
                                             "y.c, expected none")
@@ -124,7 +88,7 @@ TEST_SUITE("reference/weights") {
                              file_error);
         CHECK_NOTHROW(require_tensors(weights<float>::seeded(1, "unet"), network));
         write_safetensors(file.path(), {{"x.a", {{1}, one}}, {"x.b", {{1}, one}}});
-        CHECK_NOTHROW(require_tensors(weights<float>::from_file(file.path()), [](weights<float>& source) {
+        CHECK_NOTHROW(require_tensors(read_weights<float>(file.path()), [](weights<float>& source) {
             source.take("x.a", {1});
             source.take("x.b", {1});
         }));

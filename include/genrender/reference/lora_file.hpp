@@ -7,8 +7,10 @@
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/reference/checked_json.hpp>
+#include <genrender/reference/lora_difference.hpp>
 #include <genrender/reference/model_part.hpp>
 #include <genrender/reference/pickles.hpp>
+#include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/tensor_place.hpp>
 
 #include <nlohmann/json.hpp>
@@ -25,13 +27,6 @@
 #include <vector>
 
 namespace genrender::reference {
-
-/// What a LoRA adds to one weight W [out, in, ...]: factor * up down, of rank r.
-struct lora_difference {
-    tensor_place down; ///< [r, in, ...], the kernel's axes if W has them
-    tensor_place up;   ///< [out, r], maybe with axes of 1 behind
-    double factor = 1; ///< alpha / r
-};
 
 /// The module of a weight, and its difference.
 struct lora_module {
@@ -85,7 +80,7 @@ std::optional<std::string_view> without_ending(std::string_view name, std::strin
 } // namespace internal
 
 /// The differences in a file. Linear layers and convolutions (LoCon) have one. Which of a model's weights they belong
-/// to is found when they are merged (see weights::add_lora).
+/// to is found when they are merged (see add_lora).
 class lora_file {
 public:
     /// Reads the header and the scales. Throws file_error if it is a pickle or no safetensors file; for DoRA, LoHa, LoKr

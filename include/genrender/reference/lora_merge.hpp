@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Which of a network's weights each difference of a LoRA is of, and their sum.
+// Which of a network's weights each difference of a LoRA is of.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
+#include <genrender/reference/lora_difference.hpp>
 #include <genrender/reference/lora_file.hpp>
 #include <genrender/reference/tensor_place.hpp>
+#include <genrender/reference/weights.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -17,9 +19,6 @@
 #include <vector>
 
 namespace genrender::reference {
-
-/// Differences by the weight that they are added to.
-using lora_differences = std::multimap<std::string, lora_difference>;
 
 namespace internal {
 
@@ -93,28 +92,13 @@ inline lora_differences differences_of(lora_file const& lora, model_part part, t
     return result;
 }
 
-/// Adds factor * up down to a weight [out, in, ...], row-major. Throws file_error if the factors cannot be read.
+/// Adds what a LoRA changes in one network, `scale` times, to the tensors that are taken from its weights from now on;
+/// several LoRAs add up. Throws value_error if tensors are random or the scale is not finite, file_error as
+/// differences_of does.
 template <std::floating_point Real>
-void add_difference(std::span<Real> weight, lora_difference const& difference) {
-    auto const down = difference.down.template read<Real>();
-    auto const up = difference.up.template read<Real>();
-    auto const rank = difference.down.shape[0];
-    auto const rows = difference.up.shape[0];
-    auto const columns = down.size() / rank;
-    auto const factor = static_cast<Real>(difference.factor);
-    std::vector<Real> row(columns);
-    for (std::size_t o = 0; o < rows; ++o) {
-        std::fill(row.begin(), row.end(), Real(0));
-        for (std::size_t r = 0; r < rank; ++r) {
-            auto const weight_of_row = up[o * rank + r];
-            for (std::size_t i = 0; i < columns; ++i) {
-                row[i] += weight_of_row * down[r * columns + i];
-            }
-        }
-        for (std::size_t i = 0; i < columns; ++i) {
-            weight[o * columns + i] += factor * row[i];
-        }
-    }
+void add_lora(weights<Real>& source, lora_file const& lora, model_part part, double scale = 1) {
+    require_value(source.stored_count() > 0, "add_lora", "tensors", "random", "of files, where a LoRA is to be merged");
+    source.add_differences(differences_of(lora, part, source.places()), scale);
 }
 
 } // namespace genrender::reference

@@ -8,6 +8,7 @@
 #include <genrender/reference/diffusers_config.hpp>
 #include <genrender/reference/diffusers_folder.hpp>
 #include <genrender/reference/lora_file.hpp>
+#include <genrender/reference/lora_merge.hpp>
 #include <genrender/reference/model_part.hpp>
 #include <genrender/reference/single_file.hpp>
 #include <genrender/reference/unet_config.hpp>
@@ -81,13 +82,13 @@ public:
     void add_lora(std::filesystem::path const& path, double scale = 1) { loras_.emplace_back(lora_file(path), scale); }
 
     /// A network's tensors, to build it of, with all LoRAs. Throws file_error if there are none, or as
-    /// weights::add_lora does.
+    /// reference::add_lora does.
     template <std::floating_point Real>
     weights<Real> tensors(model_part part) const {
         auto source = with_holder(part, [&](auto const& holder) { return holder.template tensors<Real>(part); });
         source.keep_file_width(keeps_file_width_);
         for (auto const& [lora, scale] : loras_) {
-            source.add_lora(lora, part, scale);
+            reference::add_lora(source, lora, part, scale);
         }
         return source;
     }

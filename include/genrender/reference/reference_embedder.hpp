@@ -14,6 +14,7 @@
 #include <genrender/reference/group_norm.hpp>
 #include <genrender/reference/linear.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
+#include <genrender/reference/safetensors_weights.hpp>
 #include <genrender/reference/weights.hpp>
 
 #include <algorithm>
@@ -66,7 +67,7 @@ public:
         auto const dimension = file.count("dimension", 64);
         file.ignore({"_class_name"});
         file.require_all_taken();
-        auto source = weights<Real>::from_file((folder / "model.safetensors").string());
+        auto source = read_weights<Real>((folder / "model.safetensors").string());
         return reference_embedder(source, std::move(words), dimension);
     }
 

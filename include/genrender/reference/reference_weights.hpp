@@ -7,6 +7,8 @@
 #include <genrender/reference/diffusers_folder.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
+#include <genrender/reference/safetensors.hpp>
+#include <genrender/reference/safetensors_weights.hpp>
 #include <genrender/reference/unet_config.hpp>
 #include <genrender/reference/weights.hpp>
 
@@ -62,9 +64,9 @@ struct reference_weights {
     void save(std::filesystem::path const& folder, safetensors_storage storage = safetensors_storage::f32) const {
         write_json(folder / "scheduler", "scheduler_config.json", scheduler_json(config));
         write_json(folder / "unet", "config.json", unet_json(config));
-        unet.save((folder / "unet" / "diffusion_pytorch_model.safetensors").string(), storage);
+        write_weights((folder / "unet" / "diffusion_pytorch_model.safetensors").string(), unet, storage);
         write_json(folder / "controlnet", "config.json", controlnet_json(config));
-        controlnet.save((folder / "controlnet" / "diffusion_pytorch_model.safetensors").string(), storage);
+        write_weights((folder / "controlnet" / "diffusion_pytorch_model.safetensors").string(), controlnet, storage);
         if (vocabulary) {
             auto const table = vocabulary->table();
             write_json(folder / "text_encoder", "config.json",

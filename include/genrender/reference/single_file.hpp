@@ -10,6 +10,7 @@
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/model_part.hpp>
 #include <genrender/reference/pickles.hpp>
+#include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/tensor_place.hpp>
 #include <genrender/reference/unet_config.hpp>
 #include <genrender/reference/weights.hpp>

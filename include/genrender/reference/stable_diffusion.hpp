@@ -9,7 +9,9 @@
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
+#include <genrender/reference/autoencoder_config_file.hpp>
 #include <genrender/reference/autoencoder_kl.hpp>
+#include <genrender/reference/clip_text_config_file.hpp>
 #include <genrender/reference/clip_text_encoder.hpp>
 #include <genrender/reference/clip_tokenizer.hpp>
 #include <genrender/reference/clip_tokenizer_folder.hpp>

@@ -5,7 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
-#include <genrender/reference/safetensors.hpp>
+#include <genrender/reference/tensor_file.hpp>
 
 #include <concepts>
 #include <cstddef>
@@ -21,15 +21,15 @@ namespace genrender::reference {
 /// Elements of a tensor in a file that are a tensor of a network. A file may have it under another name, in another
 /// shape, or as rows of a greater one.
 struct tensor_place {
-    std::shared_ptr<safetensors_file const> file; ///< where it lies; never null
-    std::string stored;                           ///< its name there
-    std::vector<std::size_t> shape;               ///< of the network's tensor
-    std::size_t first = 0;                        ///< element of the stored tensor that is its first
+    std::shared_ptr<tensor_file const> file; ///< where it lies; never null
+    std::string stored;                      ///< its name there
+    std::vector<std::size_t> shape;          ///< of the network's tensor
+    std::size_t first = 0;                   ///< element of the stored tensor that is its first
 
     /// Number of its elements.
     std::size_t count() const { return static_cast<std::size_t>(internal::checked_product(shape).value_or(0)); }
 
-    /// Its elements, row-major. Throws file_error as safetensors_file::read does.
+    /// Its elements, row-major. Throws file_error as tensor_file::read does.
     template <std::floating_point Real>
     std::vector<Real> read() const {
         return file->template read<Real>(stored, first, count());
@@ -40,7 +40,7 @@ struct tensor_place {
 using tensor_places = std::map<std::string, tensor_place>;
 
 /// Every tensor of a file, as it lies.
-inline tensor_places places_of(std::shared_ptr<safetensors_file const> const& file) {
+inline tensor_places places_of(std::shared_ptr<tensor_file const> const& file) {
     tensor_places places;
     for (auto const& [name, entry] : file->entries()) {
         places.emplace(name, tensor_place{file, name, entry.shape, 0});

@@ -6,6 +6,7 @@
 
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/pickles.hpp>
+#include <genrender/reference/safetensors.hpp>
 #include <genrender/reference/tensor_place.hpp>
 
 #include <algorithm>

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The parameters of one network by name: from safetensors files, or drawn from a seed as they are asked for.
+// The parameters of one network by name: from files, or drawn from a seed as they are asked for.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
-#include <genrender/reference/lora_merge.hpp>
-#include <genrender/reference/safetensors.hpp>
+#include <genrender/reference/lora_difference.hpp>
 #include <genrender/reference/seeded_tensor.hpp>
 #include <genrender/reference/tensor_place.hpp>
 #include <genrender/reference/weight_storage.hpp>
@@ -17,7 +16,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,20 +27,6 @@ namespace genrender::reference {
 template <std::floating_point Real>
 class weights {
 public:
-    /// The tensors of a safetensors file, converted as they are taken. Throws file_error as safetensors_file does.
-    static weights from_file(std::string const& path) { return from_files({path}); }
-
-    /// The tensors of several safetensors files. Throws value_error if there is none, file_error as safetensors_file
-    /// does, and for a tensor that is in two of them.
-    static weights from_files(std::vector<std::string> const& paths) {
-        require_value(!paths.empty(), "weights", "paths", "empty", "at least one");
-        tensor_places places;
-        for (auto const& path : paths) {
-            add_places(places, reference::places_of(std::make_shared<safetensors_file const>(path)));
-        }
-        return from_places(std::move(places), paths.front());
-    }
-
     /// Tensors wherever they lie. `path` is the file or folder to blame for what is in no file. Throws value_error if it
     /// is empty.
     static weights from_places(tensor_places places, std::string path) {
@@ -123,15 +107,15 @@ public:
 
     /// How many tensors the files hold; 0 if they are random.
     std::size_t stored_count() const { return places_.size(); }
+    /// Where the tensors of files lie; none if they are random.
+    tensor_places const& places() const { return places_; }
     /// The file or folder to blame; empty if tensors are random.
     std::string const& path() const { return path_; }
 
-    /// Adds what a LoRA changes in this network, `scale` times, to the tensors that are taken from now on; several LoRAs
-    /// add up. Throws value_error if tensors are random or the scale is not finite, file_error as differences_of does.
-    void add_lora(lora_file const& lora, model_part part, double scale = 1) {
-        require_value(is_of_files(), "weights", "tensors", "random", "of files, where a LoRA is to be merged");
+    /// Adds what LoRAs change, `scale` times, to the tensors that are taken from now on (see add_lora). Throws value_error
+    /// if the scale is not finite.
+    void add_differences(lora_differences const& found, double scale = 1) {
         require_value(is_finite(scale), "weights", "scale", scale, "a finite number");
-        auto const found = differences_of(lora, part, places_);
         for (auto [name, difference] : found) {
             difference.factor *= scale;
             differences_.emplace(name, std::move(difference));
@@ -202,17 +186,6 @@ public:
                 is_of_files() ? read<float>(name, place_of(name, shape)) : seeded_tensor(seed_, network_, name, shape);
         }
         return result;
-    }
-
-    /// Writes all tensors taken so far into a safetensors file, from which from_file gives equal ones. Throws
-    /// file_error if the file cannot be written.
-    void save(std::string const& path, safetensors_storage storage = safetensors_storage::f32) const {
-        auto const tensors = values();
-        std::map<std::string, safetensors_source> sources;
-        for (auto const& [name, elements] : tensors) {
-            sources[name] = {taken_.at(name), elements};
-        }
-        write_safetensors(path, sources, storage);
     }
 
 private:
