@@ -116,7 +116,7 @@ inline double unet_flops(unet_config const& config, grid_extents latents, std::s
         for (std::size_t i = 0; i <= config.layers_per_block; ++i) {
             products.add_resnet(level, in + skips.back(), channels[level]);
             skips.pop_back();
-            if (config.level_has_attention[level]) {
+            if (config.has_attention_up(level)) {
                 products.add_transformer(level);
             }
             in = channels[level];

@@ -20,7 +20,8 @@ TEXT_CHANNELS = 64
 SHAPE = dict(
     in_channels=LATENT_CHANNELS, block_out_channels=(48, 96, 96), layers_per_block=1, attention_head_dim=(1, 3, 3),
     cross_attention_dim=TEXT_CHANNELS, norm_num_groups=8,
-    down_block_types=("CrossAttnDownBlock2D", "CrossAttnDownBlock2D", "DownBlock2D"))
+    # None at 32 x 32 on the way down: a third of the time, and the decoder's attention decides (Tumanyan et al. 2023).
+    down_block_types=("DownBlock2D", "CrossAttnDownBlock2D", "DownBlock2D"))
 
 
 class Denoiser(torch.nn.Module):

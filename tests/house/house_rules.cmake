@@ -265,7 +265,7 @@ file(READ ${ROOT}/examples/CMakeLists.txt example_list)
 file(GLOB examples RELATIVE ${ROOT}/examples ${ROOT}/examples/*.cpp)
 foreach(example IN LISTS examples)
     string(REGEX REPLACE "\\.cpp$" "" name "${example}")
-    if(NOT example_list MATCHES "\n *genrender_example\\(${name}\\)" OR
+    if(NOT example_list MATCHES "\n *genrender_example\\(${name}[ )]" OR
        NOT example_list MATCHES "genrender_example_test\\([^)]* ${name}[) \n]")
         violation("examples/${example}: is not built or not run by examples/CMakeLists.txt")
     endif()

@@ -147,9 +147,9 @@ TEST_SUITE("reference/diffusers_config") {
         check("unet", "down_block_types", {"DownBlock2D"}, "4 names");
         check("unet", "down_block_types", {"DownBlock2D", "AttnDownBlock2D", "DownBlock2D", "DownBlock2D"},
               "CrossAttnDownBlock2D or DownBlock2D for each level");
-        check("unet", "up_block_types", {"UpBlock2D"},
-              R"(["UpBlock2D","CrossAttnUpBlock2D","CrossAttnUpBlock2D","CrossAttnUpBlock2D"], which mirrors )"
-              "down_block_types");
+        check("unet", "up_block_types", {"UpBlock2D"}, "4 names");
+        check("unet", "up_block_types", {"UpBlock2D", "AttnUpBlock2D", "UpBlock2D", "UpBlock2D"},
+              "CrossAttnUpBlock2D or UpBlock2D for each level");
         check("unet", "mid_block_type", nullptr, "\"UNetMidBlock2DCrossAttn\"");
         check("unet", "layers_per_block", {1, 2, 2, 2}, "the same number for each level");
         check("unet", "attention_head_dim", {1, 2}, "one number or 4");

@@ -40,11 +40,11 @@ struct golden_case {
     golden_output controlled;    ///< with it
 };
 
-/// The tiny reference network, a small Stable Diffusion 1.5 and a small 2.x.
-inline std::array<golden_case, 3> const& golden_cases() {
-    static std::array<golden_case, 3> const cases = [] {
+/// The tiny reference network, a small Stable Diffusion 1.5, a small 2.x, and one whose ways down and up differ.
+inline std::array<golden_case, 4> const& golden_cases() {
+    static std::array<golden_case, 4> const cases = [] {
         auto const file = golden_file("diffusers.json");
-        std::array<golden_case, 3> read;
+        std::array<golden_case, 4> read;
         for (std::size_t c = 0; c < read.size(); ++c) {
             auto const& from = file.at("cases").at(c);
             auto const grid = from.at("grid").get<std::array<std::size_t, 2>>();

@@ -110,7 +110,7 @@ inline void write_golden_folder(std::filesystem::path const& folder, golden_case
 }
 
 /// The configuration of each case as it is written in C++, in the order of golden_cases().
-inline std::array<unet_config, 3> golden_configs() {
+inline std::array<unet_config, 4> golden_configs() {
     unet_config small_sd15;
     small_sd15.in_channels = small_sd15.out_channels = 4;
     small_sd15.block_out_channels = {16, 24, 32, 32};
@@ -135,7 +135,18 @@ inline std::array<unet_config, 3> golden_configs() {
     small_sd2.norm_num_groups = 4;
     small_sd2.conditioning_channels = 3;
     small_sd2.conditioning_embedding_out_channels = {4, 6};
-    return {unet_config{}, small_sd15, small_sd2};
+
+    unet_config uneven;
+    uneven.in_channels = uneven.out_channels = 4;
+    uneven.block_out_channels = {8, 12};
+    uneven.level_has_attention = {false, true};
+    uneven.level_has_attention_up = {true, false};
+    uneven.attention_head_dim = {1, 3};
+    uneven.cross_attention_dim = 6;
+    uneven.norm_num_groups = 4;
+    uneven.conditioning_channels = 3;
+    uneven.conditioning_embedding_out_channels = {2, 4};
+    return {unet_config{}, small_sd15, small_sd2, uneven};
 }
 
 } // namespace genrender::testing

@@ -45,10 +45,10 @@ def outputs(unet, control, z, t, prompt, hint, scale):
     return alone, unet(z, t, prompt, down_block_additional_residuals=down, mid_block_additional_residual=middle).sample
 
 
-def case(name, *, grid, tokens, t, scale, embedding, out_channels, unet=None, control=None, **shared):
-    """One golden_case."""
+def case(name, *, grid, tokens, t, scale, embedding, out_channels, ups=None, unet=None, control=None, **shared):
+    """One golden_case. The way up mirrors the way down unless `ups` says otherwise."""
     conditioning = {"conditioning_embedding_out_channels": embedding, **(control or {})}
-    ups = [kind.replace("Down", "Up") for kind in reversed(shared["down_block_types"])]
+    ups = ups or [kind.replace("Down", "Up") for kind in reversed(shared["down_block_types"])]
     unet = UNet2DConditionModel(out_channels=out_channels, up_block_types=ups, **shared, **(unet or {})).eval()
     control = ControlNetModel(**shared, **conditioning).eval()
     with torch.no_grad():
@@ -85,6 +85,11 @@ cases = [
          block_out_channels=(8, 12, 16), layers_per_block=2, attention_head_dim=(2, 3, 4), cross_attention_dim=6,
          norm_num_groups=4, down_block_types=("CrossAttnDownBlock2D",) * 2 + ("DownBlock2D",),
          use_linear_projection=True, transformer_layers_per_block=2),
+    # Attention at the finest level on the way up alone, and none at the coarsest but the middle's.
+    case("uneven", grid=(8, 4), tokens=4, t=600.0, scale=1.0, embedding=(2, 4), in_channels=4, out_channels=4,
+         block_out_channels=(8, 12), layers_per_block=1, attention_head_dim=(1, 3), cross_attention_dim=6,
+         norm_num_groups=4, down_block_types=("DownBlock2D", "CrossAttnDownBlock2D"),
+         ups=("UpBlock2D", "CrossAttnUpBlock2D")),
 ]
 write("diffusers.json", {"computed_by": f"diffusers {diffusers.__version__}",
                          "written_by": "tests/reference/make_golden.py", "cases": cases})

@@ -83,14 +83,17 @@ inline void read_unet_options(unet_config& config, config_file& file) {
     config.out_channels = file.count("out_channels", 4);
     file.require(config.in_channels == config.out_channels, "in_channels",
                  "the " + std::to_string(config.out_channels) + " of out_channels (the network sees latents alone)");
-    std::vector<std::string> mirrored;
-    for (auto const has_attention : config.level_has_attention) {
-        mirrored.insert(mirrored.begin(), has_attention ? cross_attention_up : plain_up);
-    }
     auto const types =
         file.texts("up_block_types", {plain_up, cross_attention_up, cross_attention_up, cross_attention_up});
-    file.require(types == mirrored, "up_block_types",
-                 nlohmann::json(mirrored).dump() + ", which mirrors down_block_types");
+    file.require(types.size() == config.levels(), "up_block_types", std::to_string(config.levels()) + " names");
+    for (auto const& type : types) {
+        file.require(type == cross_attention_up || type == plain_up, "up_block_types",
+                     std::string(cross_attention_up) + " or " + plain_up + " for each level");
+        config.level_has_attention_up.insert(config.level_has_attention_up.begin(), type == cross_attention_up);
+    }
+    if (config.level_has_attention_up == config.level_has_attention) {
+        config.level_has_attention_up.clear();
+    }
 
     file.expect("num_attention_heads", {nullptr}); // diffusers refuses it too: attention_head_dim is that number
     file.expect("center_input_sample", {false});
@@ -211,10 +214,9 @@ inline nlohmann::json unet_json(unet_config const& config) {
     auto json = internal::encoder_json(config);
     json["_class_name"] = "UNet2DConditionModel";
     json["out_channels"] = config.out_channels;
-    json["up_block_types"] = nlohmann::json::array();
-    for (auto const has_attention : config.level_has_attention) {
-        auto& types = json["up_block_types"];
-        types.insert(types.begin(), has_attention ? internal::cross_attention_up : internal::plain_up);
+    auto& types = json["up_block_types"] = nlohmann::json::array();
+    for (std::size_t level = config.levels(); level-- > 0;) {
+        types.push_back(config.has_attention_up(level) ? internal::cross_attention_up : internal::plain_up);
     }
     return json;
 }

@@ -36,7 +36,7 @@ public:
             auto const skip = skips[skips.size() - 1 - number * resnets - i];
             auto const index = "." + std::to_string(i);
             resnets_.emplace_back(config, source, name + ".resnets" + index, in + skip, out);
-            if (config.level_has_attention[level]) {
+            if (config.has_attention_up(level)) {
                 attentions_.emplace_back(config, source, sites, name + ".attentions" + index, level,
                                          network_part::decoder);
             }

@@ -23,7 +23,8 @@ struct unet_config {
     std::size_t out_channels = 12;                             ///< of the prediction
     std::vector<std::size_t> block_out_channels{32, 64, 56};   ///< from the finest level; each next halves the grid
     std::vector<bool> level_has_attention{false, true, false}; ///< down_block_types: CrossAttnDownBlock2D, DownBlock2D
-    std::size_t layers_per_block = 1;                     ///< resnets a level on the way down; one more on the way up
+    std::vector<bool> level_has_attention_up{}; ///< of the way up, from the finest level too; empty: as on the way down
+    std::size_t layers_per_block = 1;           ///< resnets a level on the way down; one more on the way up
     std::vector<std::size_t> attention_head_dim{1, 2, 2}; ///< a level; it is the *number* of heads, as in SD 1.5
     std::size_t transformer_layers_per_block = 1;         ///< transformer blocks of every attention
     bool use_linear_projection = false;                   ///< the ways in and out of attention are no convolutions
@@ -43,6 +44,10 @@ struct unet_config {
     std::size_t time_channels() const { return 4 * block_out_channels.front(); }
     /// Pixels of the hint along one latent pixel.
     std::size_t hint_scale() const { return std::size_t{1} << (conditioning_embedding_out_channels.size() - 1); }
+    /// Whether there is attention on the way up at a level, 0 the finest.
+    bool has_attention_up(std::size_t level) const {
+        return level_has_attention_up.empty() ? level_has_attention[level] : level_has_attention_up[level];
+    }
     /// What height and width of the latents must be divisible by.
     std::size_t grid_divisor() const { return std::size_t{1} << (levels() - 1); }
 };
@@ -57,6 +62,9 @@ inline void require_config(unet_config const& config) {
     require_value(fits(config.levels()), function, "block_out_channels.size()", config.levels(), "1 to 16");
     require_value(config.level_has_attention.size() == config.levels(), function, "level_has_attention.size()",
                   config.level_has_attention.size(), one_a_level);
+    require_value(config.level_has_attention_up.empty() || config.level_has_attention_up.size() == config.levels(),
+                  function, "level_has_attention_up.size()", config.level_has_attention_up.size(),
+                  "none, or one entry for each of block_out_channels");
     require_value(config.attention_head_dim.size() == config.levels(), function, "attention_head_dim.size()",
                   config.attention_head_dim.size(), one_a_level);
     auto const& embedding = config.conditioning_embedding_out_channels;
