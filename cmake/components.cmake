@@ -230,6 +230,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/clip_tokenizer_folder.hpp
     reference/clip_words.hpp
     reference/compvis_architecture.hpp
+    reference/compvis_modules.hpp
     reference/compvis_names.hpp
     reference/config_file.hpp
     reference/controlnet.hpp

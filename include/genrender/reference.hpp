@@ -20,6 +20,7 @@
 #include <genrender/reference/clip_tokenizer_folder.hpp>
 #include <genrender/reference/clip_words.hpp>
 #include <genrender/reference/compvis_architecture.hpp>
+#include <genrender/reference/compvis_modules.hpp>
 #include <genrender/reference/compvis_names.hpp>
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/controlnet.hpp>

@@ -154,6 +154,19 @@ TEST_SUITE("reference/lora_merge") {
         CHECK(refusal(base, lora) == "module a_b_c may be a.b_c.weight or a_b.c.weight, expected one");
     }
 
+    TEST_CASE("names of CompVis' UNet are found whose layers are counted otherwise") {
+        tensor_writer base;
+        tensor_writer lora;
+        base.add("down_blocks.0.resnets.0.conv1.weight", {2, 3, 3, 3}, "x");
+        base.add("down_blocks.1.attentions.0.proj_in.weight", {2, 3}, "x");
+        lora.add("lora_unet_input_blocks_3_1_proj_in.lora_down.weight", {1, 3}, "y");
+        lora.add("lora_unet_input_blocks_3_1_proj_in.lora_up.weight", {2, 1}, "z");
+        CHECK(refusal(base, lora) == "none");
+        base.add("down_blocks.0.resnets.1.conv1.weight", {2, 3, 3, 3}, "x");
+        CHECK(refusal(base, lora) ==
+              "1 of 1 modules have no place in the UNet: input_blocks_3_1_proj_in, expected none");
+    }
+
     TEST_CASE("modules without a weight and factors of another shape are named") {
         tensor_writer base;
         tensor_writer lora;

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
+#include <genrender/reference/compvis_modules.hpp>
 #include <genrender/reference/lora_difference.hpp>
 #include <genrender/reference/lora_file.hpp>
 #include <genrender/reference/tensor_place.hpp>
@@ -27,12 +28,19 @@ inline std::multimap<std::string, std::string> underscored_names(tensor_places c
     std::multimap<std::string, std::string> names;
     for (auto const& [name, place] : places) {
         if (name.ends_with(".weight") && place.shape.size() >= 2) {
-            auto module = name.substr(0, name.size() - std::string_view(".weight").size());
-            std::replace(module.begin(), module.end(), '.', '_');
-            names.emplace(std::move(module), name);
+            names.emplace(underscored(std::string_view(name).substr(0, name.rfind('.'))), name);
         }
     }
     return names;
+}
+
+/// Resnets a level on the way down of the UNet whose weights these are, 0 for other networks.
+inline std::size_t down_layers(tensor_places const& places) {
+    std::size_t layers = 0;
+    while (places.contains("down_blocks.0.resnets." + std::to_string(layers) + ".conv1.weight")) {
+        ++layers;
+    }
+    return layers;
 }
 
 /// Throws file_error unless a difference has the shape of its weight.
@@ -54,10 +62,12 @@ inline void require_fits(lora_file const& lora, std::string const& name, tensor_
 } // namespace internal
 
 /// The differences that a LoRA has for one network, whose weights are `places`. A name with underscores, as kohya writes
-/// it, is that of the weight whose name is the same with underscores for dots. Throws file_error naming modules that the
-/// network does not have, or that may be two; and factors that do not have the shape of their weight.
+/// it, is that of the weight whose name is the same with underscores for dots, or was in CompVis' UNet. Throws file_error
+/// naming modules that the network does not have, or that may be two; and factors that do not have the shape of their
+/// weight.
 inline lora_differences differences_of(lora_file const& lora, model_part part, tensor_places const& places) {
-    auto const underscored = internal::underscored_names(places);
+    auto const by_underscores = internal::underscored_names(places);
+    auto const layers = internal::down_layers(places);
     lora_differences result;
     counted_names unknown;
     std::size_t count = 0;
@@ -68,7 +78,8 @@ inline lora_differences differences_of(lora_file const& lora, model_part part, t
         ++count;
         std::string name = module.name + ".weight";
         if (module.is_underscored) {
-            auto const [first, last] = underscored.equal_range(module.name);
+            auto const compvis = part == model_part::unet ? diffusers_module(module.name, layers) : std::nullopt;
+            auto const [first, last] = by_underscores.equal_range(compvis.value_or(module.name));
             if (first != last && std::next(first) != last) {
                 throw file_error(lora.path() + ": module " + module.name + " may be " + first->second + " or " +
                                  std::next(first)->second + ", expected one");
