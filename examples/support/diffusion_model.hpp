@@ -57,7 +57,7 @@ public:
             scaled_linear_alphas_cumprod(of.beta_start, of.beta_end, of.num_train_timesteps));
     }
 
-    /// What a person should know of the prompt: what of it had no room. Throws value_error for words that the model does
+    /// What a person should know of the prompt: what of it had no room or is unknown. Throws value_error for words that the model does
     /// not know, or a text that is no UTF-8.
     std::vector<std::string> notes() const {
         std::vector<std::string> notes;
@@ -75,6 +75,11 @@ public:
             if (tokens.cut > 0) {
                 notes.push_back(std::string(option) + ": " + std::to_string(tokens.cut) +
                                 " tokens have no room and are " + "cut: " + tokens.cut_text());
+            }
+            // CLIP's own vocabulary has pieces for every word; a small one is that of the captions of its training.
+            if (pipeline.vocabulary_size() < 10'000 && !tokens.split_text().empty()) {
+                notes.push_back(std::string(option) +
+                                ": the model was trained on no such words: " + tokens.split_text());
             }
         }
         return notes;

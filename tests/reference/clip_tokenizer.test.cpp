@@ -86,6 +86,11 @@ TEST_SUITE("reference/clip_tokenizer") {
         CHECK(prompt.words[1].unknown == 0);
     }
 
+    TEST_CASE("words that are no token as a whole are told") {
+        CHECK(small_tokenizer(9)("a cat caca \xc3\xa4").split_text() == "caca \xc3\xa4");
+        CHECK(small_tokenizer()("a cat a").split_text().empty());
+    }
+
     TEST_CASE("names of special tokens in a text are these tokens") {
         auto const prompt = small_tokenizer()("a<|endoftext|>cat pad");
         CHECK(prompt.ids == id_list{7, 3, 8, 5, 9, 8});

@@ -36,9 +36,20 @@ struct clip_prompt {
 
     /// Words of which at least one token had no room, joined by spaces; empty if nothing was cut.
     std::string cut_text() const {
+        return text_of([](clip_word const& word) { return word.kept < word.tokens; });
+    }
+    /// Words that are no token as a whole, joined by spaces. Of a vocabulary that was made of a small world's captions,
+    /// words that stand in none of them.
+    std::string split_text() const {
+        return text_of([](clip_word const& word) { return word.tokens > 1 || word.unknown > 0; });
+    }
+
+private:
+    template <class Condition>
+    std::string text_of(Condition const& holds) const {
         std::string text;
         for (auto const& word : words) {
-            if (word.kept < word.tokens) {
+            if (holds(word)) {
                 text += (text.empty() ? "" : " ") + word.text;
             }
         }

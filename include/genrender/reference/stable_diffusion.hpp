@@ -86,6 +86,8 @@ public:
         return discrete_noise_schedule(
             scaled_linear_alphas_cumprod(config_.beta_start, config_.beta_end, config_.num_train_timesteps));
     }
+    /// How many tokens its tokenizer has.
+    std::size_t vocabulary_size() const { return text_config_.vocab_size; }
     /// A text as the text encoder takes it, and what of it had no room. Throws value_error for what is no UTF-8.
     clip_prompt tokens(std::string_view text) const { return tokenizer_(text); }
 
