@@ -116,11 +116,6 @@ public:
 protected:
     /// A file of which nothing is known yet.
     explicit tensor_file(std::string path) : path_(std::move(path)) {}
-    tensor_file(tensor_file const&) = default;
-    tensor_file(tensor_file&&) = default;
-    tensor_file& operator=(tensor_file const&) = default;
-    tensor_file& operator=(tensor_file&&) = default;
-    ~tensor_file() = default;
 
     /// Throws file_error `path: found, expected ...` unless it holds.
     void require(bool holds, std::string const& found, std::string const& expected) const {
