@@ -18,6 +18,7 @@
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/linear_combination.hpp>
 #include <genrender/core/parallel.hpp>
+#include <genrender/core/plan_key.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/core/stack.hpp>
@@ -69,11 +70,13 @@
 #include <genrender/attention/attention_scratch.hpp>
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/attention_tile.hpp>
+#include <genrender/attention/attention_sources.hpp>
 #include <genrender/attention/extended_attention.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/host_features.hpp>
 #include <genrender/attention/key_value_view.hpp>
 #include <genrender/attention/plain_attention.hpp>
+#include <genrender/attention/projected_features.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
 
 #include <genrender/sampling/classifier_free_guidance.hpp>
@@ -94,7 +97,9 @@
 
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/blending/blend_plans.hpp>
+#include <genrender/blending/call_rows.hpp>
 #include <genrender/blending/mix_rows.hpp>
+#include <genrender/blending/padded_rows.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
 #include <genrender/injection/feature_io.hpp>

@@ -33,19 +33,16 @@ public:
     /// cannot store features in the format asked for.
     template <attention_call Call>
     Features operator()(Call& call) const {
-        auto const f = call.f();
         auto const frames = call.frames().size();
         auto const is_recorded = takes_part_(call.place());
-        auto const Q = call.query(f);
-        Features const K = call.key(f);
-        Features const V = call.value(f);
-        auto const sources =
-            is_recorded && extended_ ? extended_attention_sources(K, V, frames) : own_attention_sources(K, V, frames);
-        Features F = call.attend(Q, sources);
+        projected_features<Features> const own = projections_of(call, call.f());
+        auto const sources = is_recorded && extended_ ? extended_attention_sources(own.K, own.V, frames)
+                                                      : own_attention_sources(own.K, own.V, frames);
+        Features F = call.attend(own.Q, sources);
         if (is_recorded) {
             keyframe_features<Features> kept;
-            kept.K_KF = stored_features(call, K, storage_);
-            kept.V_KF = stored_features(call, V, storage_);
+            kept.K_KF = stored_features(call, own.K, storage_);
+            kept.V_KF = stored_features(call, own.V, storage_);
             kept.F_KF = stored_features(call, F, storage_);
             bank_->put(call.place(), std::move(kept));
         }
