@@ -116,8 +116,10 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     sampling/karras_schedule.hpp
     sampling/noise_schedule.hpp
     sampling/preconditioning.hpp
+    sampling/run_shapes.hpp
     sampling/sampler.hpp
     sampling/sampler_arguments.hpp
+    sampling/storing_denoiser.hpp
     keyframes/draw_keyframes.hpp
     keyframes/feature_bank.hpp
     keyframes/recorder.hpp
@@ -128,6 +130,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/mix_rows.hpp
     blending/mix_rows.inl
     blending/padded_rows.hpp
+    blending/row_bound.hpp
     blending/texel_weights.hpp
     injection/feature_io.hpp
     injection/host_attention_call.hpp
@@ -149,6 +152,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     pipeline/sequence_denoiser.hpp
     pipeline/sequence_passes.hpp
     pipeline/sequence_method.hpp
+    pipeline/shapes_of_run.hpp
     baselines/baseline_settings.hpp
     baselines/per_frame.hpp
     baselines/pix2video.hpp

@@ -87,8 +87,10 @@
 #include <genrender/sampling/karras_schedule.hpp>
 #include <genrender/sampling/noise_schedule.hpp>
 #include <genrender/sampling/preconditioning.hpp>
+#include <genrender/sampling/run_shapes.hpp>
 #include <genrender/sampling/sampler.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
+#include <genrender/sampling/storing_denoiser.hpp>
 
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
@@ -100,6 +102,7 @@
 #include <genrender/blending/call_rows.hpp>
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/padded_rows.hpp>
+#include <genrender/blending/row_bound.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
 #include <genrender/injection/feature_io.hpp>
@@ -122,6 +125,7 @@
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/pipeline/sequence_passes.hpp>
 #include <genrender/pipeline/sequence_method.hpp>
+#include <genrender/pipeline/shapes_of_run.hpp>
 
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>

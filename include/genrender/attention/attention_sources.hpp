@@ -115,6 +115,14 @@ public:
     block_list const& operator[](std::size_t i) const { return lists_[i]; }
     /// What frame i attends to, to be written: the pattern is forgotten.
     block_list& operator[](std::size_t i) { return written()[i]; }
+    /// What the first frame attends to.
+    block_list const& front() const { return lists_.front(); }
+    /// What the last frame attends to.
+    block_list const& back() const { return lists_.back(); }
+    /// What the first frame attends to, to be written: the pattern is forgotten.
+    block_list& front() { return written().front(); }
+    /// What the last frame attends to, to be written: the pattern is forgotten.
+    block_list& back() { return written().back(); }
     /// The first frame's list.
     auto begin() const { return lists_.begin(); }
     /// The first frame's list, to be written: the pattern is forgotten.
