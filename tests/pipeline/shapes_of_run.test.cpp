@@ -127,6 +127,10 @@ TEST_SUITE("pipeline/shapes_of_run") {
         }
     };
 
+    struct names_its_call : refusing {
+        using call_type = attention_call_archetype<features, double>;
+    };
+
     /// The paper's method without its word on shapes.
     struct untold {
         generative_rendering paper;
@@ -258,6 +262,15 @@ TEST_SUITE("pipeline/shapes_of_run") {
         refusing const phi{{.grid = {8, 8}}};
         CHECK_THROWS_WITH_AS(render(phi, to_uv_view(scene()), {.settings = few_steps()}),
                              "refusing: keyframes is 3, expected 4", value_error);
+    }
+    TEST_CASE("16 bits are refused before the first call of a denoiser that names calls without stored") {
+        names_its_call const phi{{{.grid = {8, 8}}}};
+        auto settings = few_steps();
+        settings.keyframe_storage = feature_storage::f16;
+        CHECK_THROWS_WITH_AS(render(phi, to_uv_view(scene()), {.settings = settings}),
+                             "render: settings.keyframe_storage is of 16 bits, expected feature_storage::same for a "
+                             "denoiser whose call_type has no `stored`",
+                             value_error);
     }
     TEST_CASE("within a run equal keys mean equal arrays, one for each grid, frame and evaluation") {
         for (auto const& [sampler, evaluations] :

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 1, 3, 5] What the frames of a stack attend to: lists of blocks, and what the lists amount to.
+// What the frames of a stack attend to: lists of blocks, and what the lists amount to.
 #pragma once
 
 #include <genrender/core/begin_header.inl>

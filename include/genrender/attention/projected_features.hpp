@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 2] Q, K and V of features at once, for engines whose module has one matrix for the three.
+// Q, K and V of features at once, for engines whose module has one matrix for the three.
 #pragma once
 
 #include <genrender/core/begin_header.inl>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] The plans of all frames of a call as one list of int32 offsets and indices, as embedding bags take them.
+// The plans of all frames of a call as one list of int32 offsets and indices, as embedding bags take them.
 #pragma once
 
 #include <genrender/core/begin_header.inl>

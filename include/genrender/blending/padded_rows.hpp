@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] A plan's rows as arrays of a fixed width with alpha folded in, as static graphs and devices take them.
+// A plan's rows as arrays of a fixed width with alpha folded in, as static graphs and devices take them.
 #pragma once
 
 #include <genrender/core/begin_header.inl>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] How many entries a row of a plan has at most, known before there is a plan.
+// How many entries a row of a plan has at most, known before there is a plan.
 #pragma once
 
 #include <genrender/core/begin_header.inl>

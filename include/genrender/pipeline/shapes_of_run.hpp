@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR alg. 1] The shapes of a run from its settings, method and compiled maps.
+// The shapes of a run from its settings, method and compiled maps.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
