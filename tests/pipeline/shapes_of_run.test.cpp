@@ -273,8 +273,8 @@ TEST_SUITE("pipeline/shapes_of_run") {
                              value_error);
     }
     TEST_CASE("within a run equal keys mean equal arrays, one for each grid, frame and evaluation") {
-        for (auto const& [sampler, evaluations] :
-             {std::pair(sampler_kind::euler, std::size_t{3}), std::pair(sampler_kind::heun, std::size_t{5})}) {
+        for (auto const sampler : {sampler_kind::euler, sampler_kind::heun}) {
+            auto const evaluations = std::size_t{sampler == sampler_kind::euler ? 3U : 5U};
             auto settings = few_steps();
             settings.sampler = sampler;
             seen_shapes seen;

@@ -106,7 +106,7 @@ struct flawed_call {
             features_type sum(Q.frames, Q.tokens, Q.channels);
             for (std::size_t b = 0; b < sources.front().size(); ++b) {
                 for (std::size_t i = 0; i < sources.size(); ++i) {
-                    changed[i] = {sources[i][b]};
+                    changed[i] = {sources[i][std::min(b, sources[i].size() - 1)]};
                 }
                 auto const part = run->attend(Q, changed);
                 for (std::size_t e = 0; e < sum.elements->size(); ++e) {
