@@ -46,6 +46,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     core/linear_combination.hpp
     core/linear_combination.inl
     core/parallel.hpp
+    core/plan_key.hpp
     core/random.hpp
     core/sparse_rows.hpp
     core/stack.hpp
@@ -96,6 +97,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     attention/attention_scratch.hpp
     attention/attention_scratch.inl
     attention/attention_site.hpp
+    attention/attention_sources.hpp
     attention/attention_tile.hpp
     attention/attention_tile.inl
     attention/extended_attention.hpp
@@ -103,6 +105,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     attention/host_features.hpp
     attention/key_value_view.hpp
     attention/plain_attention.hpp
+    attention/projected_features.hpp
     attention/scaled_dot_product.hpp
     attention/scaled_dot_product.inl
     sampling/classifier_free_guidance.hpp
@@ -113,16 +116,21 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     sampling/karras_schedule.hpp
     sampling/noise_schedule.hpp
     sampling/preconditioning.hpp
+    sampling/run_shapes.hpp
     sampling/sampler.hpp
     sampling/sampler_arguments.hpp
+    sampling/storing_denoiser.hpp
     keyframes/draw_keyframes.hpp
     keyframes/feature_bank.hpp
     keyframes/recorder.hpp
     keyframes/stoppable_denoiser.hpp
     blending/blend_plan.hpp
     blending/blend_plans.hpp
+    blending/call_rows.hpp
     blending/mix_rows.hpp
     blending/mix_rows.inl
+    blending/padded_rows.hpp
+    blending/row_bound.hpp
     blending/texel_weights.hpp
     injection/feature_io.hpp
     injection/host_attention_call.hpp
@@ -144,6 +152,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     pipeline/sequence_denoiser.hpp
     pipeline/sequence_passes.hpp
     pipeline/sequence_method.hpp
+    pipeline/shapes_of_run.hpp
     baselines/baseline_settings.hpp
     baselines/per_frame.hpp
     baselines/pix2video.hpp

@@ -18,6 +18,7 @@
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/linear_combination.hpp>
 #include <genrender/core/parallel.hpp>
+#include <genrender/core/plan_key.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/core/stack.hpp>
@@ -69,11 +70,13 @@
 #include <genrender/attention/attention_scratch.hpp>
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/attention_tile.hpp>
+#include <genrender/attention/attention_sources.hpp>
 #include <genrender/attention/extended_attention.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/host_features.hpp>
 #include <genrender/attention/key_value_view.hpp>
 #include <genrender/attention/plain_attention.hpp>
+#include <genrender/attention/projected_features.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
 
 #include <genrender/sampling/classifier_free_guidance.hpp>
@@ -84,8 +87,10 @@
 #include <genrender/sampling/karras_schedule.hpp>
 #include <genrender/sampling/noise_schedule.hpp>
 #include <genrender/sampling/preconditioning.hpp>
+#include <genrender/sampling/run_shapes.hpp>
 #include <genrender/sampling/sampler.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
+#include <genrender/sampling/storing_denoiser.hpp>
 
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
@@ -94,7 +99,10 @@
 
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/blending/blend_plans.hpp>
+#include <genrender/blending/call_rows.hpp>
 #include <genrender/blending/mix_rows.hpp>
+#include <genrender/blending/padded_rows.hpp>
+#include <genrender/blending/row_bound.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
 #include <genrender/injection/feature_io.hpp>
@@ -117,6 +125,7 @@
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/pipeline/sequence_passes.hpp>
 #include <genrender/pipeline/sequence_method.hpp>
+#include <genrender/pipeline/shapes_of_run.hpp>
 
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>

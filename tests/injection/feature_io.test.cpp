@@ -233,6 +233,15 @@ TEST_SUITE("injection/feature_io") {
         }
     }
 
+    TEST_CASE("a graph whose features cannot be stored in 16 bits is refused when it asks for its inputs") {
+        feature_bank<foreign::handle> bank(1, 2);
+        recorder<foreign::handle> const pass(bank, always, true, feature_storage::f16);
+        CHECK_THROWS_WITH_AS((inputs_at<foreign::handle, float>(pass, place, KF)),
+                             "stored_features: storage is of 16 bits, expected feature_storage::same for features "
+                             "without `stored`",
+                             value_error);
+    }
+
     TEST_CASE("where nothing takes part the recorder asks for nothing and keeps nothing") {
         matrix_module<double> const module(channels, 2, 1);
         auto const f = random_features<double>({KF.size(), tokens, channels}, 2);

@@ -11,7 +11,9 @@
 #include "support/matrix_module.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 using namespace genrender;
@@ -206,6 +208,42 @@ TEST_SUITE("keyframes/recorder") {
         CHECK_NOTHROW(recorder<int>(of_an_engine, never, true, feature_storage::bf16).record({}, 1, 2));
     }
 
+    TEST_CASE("16 bits that an engine cannot store are refused before anything is computed") {
+        struct without_stored : attention_call_archetype<features, double> {
+            attention_place where;
+            std::size_t* projected;
+            attention_place place() const { return where; }
+            std::span<frame_index const> frames() const { return drawn; }
+            features f() const { return input(1); }
+            features query(features const& f) const { return ++*projected, f; }
+            features attend(features const& Q, attention_sources<features> const&) const { return Q; }
+            features key(features const& f) const { return f; }
+            features value(features const& f) const { return f; }
+        };
+        static_assert(attention_call<without_stored> && !storing_attention_call<without_stored>);
+        std::size_t projected = 0;
+        without_stored call;
+        call.where = {{1}, 0};
+        call.projected = &projected;
+        feature_bank<features> bank(2, 1);
+        CHECK_THROWS_WITH_AS(recorder<features>(bank, always, true, feature_storage::f16)(call),
+                             "stored_features: storage is of 16 bits, expected feature_storage::same for an attention "
+                             "call without `stored`",
+                             value_error);
+        CHECK(projected == 0);
+        CHECK_NOTHROW(recorder<features>(bank, never, true, feature_storage::f16)(call));
+        CHECK_NOTHROW(recorder<features>(bank, always)(call));
+        CHECK(projected == 2);
+
+        // A static graph is refused before it runs.
+        feature_bank<int> of_an_engine(1, 1);
+        CHECK_THROWS_WITH_AS(recorder<int>(of_an_engine, always, true, feature_storage::bf16).records({}),
+                             "stored_features: storage is of 16 bits, expected feature_storage::same for features "
+                             "without `stored`",
+                             value_error);
+        CHECK(!recorder<int>(of_an_engine, never, true, feature_storage::bf16).records({}));
+        CHECK(recorder<int>(of_an_engine, always).records({}));
+    }
     TEST_CASE("calls at different places may run at the same time") {
         module_type const module(channels, 1, 1);
         feature_bank<features> bank(12, 2);

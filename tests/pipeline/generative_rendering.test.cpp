@@ -5,6 +5,7 @@
 
 #include "../baselines/layered_denoiser.hpp"
 #include <genrender/testing/analytic_denoiser.hpp>
+#include "../support/fixed_memory_denoiser.hpp"
 #include "../support/random_scene.hpp"
 #include <genrender/testing/sequence_method_laws.hpp>
 
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 
 using namespace genrender;
@@ -43,6 +45,21 @@ TEST_SUITE("pipeline/generative_rendering") {
             CHECK(testing::check_sequence_method_laws(generative_rendering{}, phi, to_uv_view(maps), settings).text() ==
                   "");
         }
+    }
+    TEST_CASE_TEMPLATE("features of keyframes may lie in memory that each keyframe pass uses again", Engine,
+                       testing::graph_in_fixed_memory, testing::calls_in_fixed_memory) {
+        auto const maps = testing::random_scene(33, 5, {32, 32}, 3);
+        auto settings = four_steps();
+        settings.sampler = sampler_kind::heun;
+        settings.keyframe_storage =
+            std::is_same_v<Engine, testing::calls_in_fixed_memory> ? feature_storage::f16 : feature_storage::same;
+        Engine const fixed{{.grid = {8, 8}, .attention = 0.5, .guidance_branches = 2}, true};
+        Engine const fresh{{.grid = {8, 8}, .attention = 0.5, .guidance_branches = 2}, false};
+        auto const in_fixed = render(fixed, to_uv_view(maps), {.settings = settings, .loop = threaded_loop(2)}).z;
+        auto const in_fresh = render(fresh, to_uv_view(maps), {.settings = settings}).z;
+        CHECK(std::equal(in_fixed.begin(), in_fixed.end(), in_fresh.begin()));
+        std::size_t const stacks = std::is_same_v<Engine, testing::calls_in_fixed_memory> ? 3 : 2;
+        CHECK(fixed.memory.kept == 7 * 2 * stacks); // evaluations, branches of the one place that takes part
     }
     TEST_CASE("keyframes are those of the step and none outside the window") {
         auto settings = four_steps();

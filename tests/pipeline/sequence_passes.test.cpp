@@ -3,14 +3,19 @@
 #include <genrender/pipeline/sequence_passes.hpp>
 
 #include <genrender/testing/analytic_denoiser.hpp>
+#include "../support/meeting_place.hpp"
 #include "../support/shifted_strip.hpp"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -87,6 +92,89 @@ TEST_SUITE("pipeline/sequence_passes") {
             CHECK(world.report.denoiser_seconds > 0);
         }
     }
+    TEST_CASE("at most as many calls run at the same time as the settings say, each once") {
+        for (auto const at_once : {1, 2, 0, 7}) {
+            strip_run world;
+            world.run.loop = threaded_loop(4);
+            world.settings.calls_at_once = static_cast<std::size_t>(at_once);
+            sequence_passes<analytic_denoiser<double>, shifted_strip> const passes(world.run, world.x0, world.z, 0.5,
+                                                                                   2);
+            testing::meeting_place meeting;
+            std::array<std::atomic<int>, 5> runs{};
+            passes.denoise_frames([&](std::span<frame_index const> stack) {
+                ++runs[stack.front().value];
+                return [&](auto& call) { // runs while the denoiser does, at its last site
+                    if (call.place() == attention_place{{2}, 0}) {
+                        meeting.meet(std::chrono::milliseconds(at_once == 1 ? 20 : 2000));
+                    }
+                    return plain_attention{}(call);
+                };
+            });
+            CHECK(std::all_of(runs.begin(), runs.end(), [](auto const& count) { return count == 1; }));
+            CHECK((at_once == 1 ? meeting.most() == 1 : meeting.most() >= 2));
+            CHECK((at_once != 2 || meeting.most() == 2));
+            CHECK(world.told.back().frames_done == 5);
+        }
+    }
+    TEST_CASE("one call at a time leaves the loop's threads to the library's own work") {
+        strip_run world;
+        world.settings.calls_at_once = 1;
+        world.settings.frames_per_call = 5;
+        testing::meeting_place meeting;
+        std::vector<frame_index> const KF{{0}};
+        world.passes.denoise_frames([&](std::span<frame_index const> stack) {
+            auto const plans = world.passes.make_plans(stack, [&](shifted_strip const& map, frame_index i) {
+                meeting.meet(std::chrono::milliseconds(2000));
+                return make_blend_plan<double>(map, KF, i);
+            });
+            CHECK(plans.rows({2}, {3}).row_count() == 4);
+            return plain_attention{};
+        });
+        CHECK(meeting.most() == 2);
+    }
+    TEST_CASE("a call that fails ends the pass, however few run at once") {
+        strip_run world;
+        world.settings.calls_at_once = 1;
+        std::atomic<std::size_t> calls{0};
+        CHECK_THROWS_AS(world.passes.denoise_frames([&](std::span<frame_index const>) -> plain_attention {
+            ++calls;
+            throw cancelled("enough");
+        }),
+                        cancelled);
+        CHECK(calls == 1);
+    }
+    TEST_CASE("a last call that is filled repeats the last frame, and one in order is not filled") {
+        strip_run world;
+        world.settings.frames_per_call = 3;
+        world.settings.fills_last_call = true;
+        auto const expected = [&] {
+            strip_run other;
+            other.passes.denoise_frames_alone();
+            return other.x0;
+        }();
+        std::mutex mutex;
+        std::set<std::vector<frame_index>> stacks;
+        std::atomic<std::size_t> made{0};
+        world.passes.denoise_frames([&](std::span<frame_index const> stack) {
+            std::lock_guard const lock(mutex);
+            stacks.insert({stack.begin(), stack.end()});
+            world.passes.make_plans(stack, [&](shifted_strip const&, frame_index) {
+                ++made;
+                return blend_plan<double>{};
+            });
+            return plain_attention{};
+        });
+        CHECK(stacks == std::set<std::vector<frame_index>>{{{0}, {1}, {2}}, {{3}, {4}, {4}}});
+        CHECK(made == 5);
+        CHECK(std::equal(world.x0.begin(), world.x0.end(), expected.begin()));
+        CHECK(world.told.back().frames_done == 5);
+        std::vector<std::size_t> in_order;
+        world.passes.denoise_frames_in_order([&](std::span<frame_index const> stack) {
+            in_order.push_back(stack.size());
+            return plain_attention{};
+        });
+        CHECK(in_order == std::vector<std::size_t>{3, 2});
+    }
     TEST_CASE("in order means one call after the other from the first frame on") {
         strip_run world;
         world.settings.frames_per_call = 2;
@@ -134,7 +222,7 @@ TEST_SUITE("pipeline/sequence_passes") {
         strip_run world;
         std::vector<frame_index> const frames{{1}, {4}};
         std::vector<frame_index> const KF{{0}};
-        std::size_t made = 0;
+        std::atomic<std::size_t> made{0}; // the loop has two threads
         auto const plans = world.passes.make_plans(frames, [&](shifted_strip const& map, frame_index i) {
             ++made;
             return make_blend_plan<double>(map, KF, i);

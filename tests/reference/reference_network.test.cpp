@@ -393,6 +393,12 @@ TEST_SUITE("reference/reference_network") {
         CHECK(run(network, as_it_is) == expected);
         CHECK(run(network, [](auto& settings) { settings.reuses_keyframes = false; }) == expected);
         CHECK(run(network, [](auto& settings) { settings.frames_per_call = 2; }) == expected);
+        auto const filled = [](auto& settings) {
+            settings.frames_per_call = 2; // of 3 frames
+            settings.fills_last_call = true;
+            settings.calls_at_once = 1;
+        };
+        CHECK(run(network, filled) == expected);
         // Where the encoder takes part the way down of keyframes is another one, and nothing is reused.
         auto const everywhere = [](auto& settings) {
             settings.layers = [](attention_site const&, std::uint32_t) { return true; };

@@ -59,6 +59,10 @@ TEST_SUITE("testing/attention_call_laws") {
         CHECK(breaks(flaw::writes_into_F, sums));
         CHECK(
             breaks(flaw::keeps_too_much_of_F_hat, "attention_call: mix weighs F_bar by alpha and F_hat by 1 - alpha"));
+        CHECK(breaks(flaw::joins_what_is_left_out,
+                     "attention_call: attend gives by sources.pattern() what it gives by the lists"));
+        CHECK(breaks(flaw::projects_keys_twice,
+                     "projecting_attention_call: project gives what query, key and value give"));
         CHECK(breaks(flaw::stores_zeros, "storing_attention_call: feature_storage::same returns x"));
         CHECK(breaks(flaw::stores_what_is_infinite, "storing_attention_call: attend takes keys and values of 16 bits"));
     }

@@ -6,6 +6,7 @@
 
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/plain_attention.hpp>
+#include <genrender/attention/projected_features.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 
@@ -52,6 +53,8 @@ enum class flaw {
     reads_the_last_entry,
     reads_the_first_frame_of_F_KF,
     keeps_too_much_of_F_hat,
+    joins_what_is_left_out,
+    projects_keys_twice,
     stores_zeros,
     stores_what_is_infinite
 };
@@ -87,14 +90,23 @@ struct flawed_call {
         return memory;
     }
     features_type value(features_type const& f) const { return run->value(f); }
+    projected_features<features_type> project(features_type const& f) const {
+        return {query(f), key(f), what == flaw::projects_keys_twice ? key(f) : value(f)};
+    }
 
     features_type attend(features_type const& Q, attention_sources<features_type> const& sources) const {
         auto changed = sources;
+        if (auto const& all = sources.pattern();
+            what == flaw::joins_what_is_left_out && all.meaning == attention_meaning::own_and_joined) {
+            return run->attend(Q, attention_sources<features_type>::own_and_joined(
+                                      *all.K, *all.V, *all.K_KF, *all.V_KF, all.joined,
+                                      std::vector<std::optional<std::size_t>>(sources.size())));
+        }
         if (what == flaw::adds_blocks_up) {
             features_type sum(Q.frames, Q.tokens, Q.channels);
             for (std::size_t b = 0; b < sources.front().size(); ++b) {
                 for (std::size_t i = 0; i < sources.size(); ++i) {
-                    changed[i] = {sources[i][b]};
+                    changed[i] = {sources[i][std::min(b, sources[i].size() - 1)]};
                 }
                 auto const part = run->attend(Q, changed);
                 for (std::size_t e = 0; e < sum.elements->size(); ++e) {

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/attention_site.hpp>
+#include <genrender/attention/attention_sources.hpp>
 #include <genrender/core/index.hpp>
 #include <genrender/core/sparse_rows.hpp>
 
@@ -12,22 +13,8 @@
 #include <concepts>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace genrender {
-
-/// Keys and values of one frame, as a part of what a query attends to: row `frame` of the stacks K and V.
-template <class Features>
-struct key_value_block {
-    Features const* K = nullptr; ///< keys, a stack [frames, tokens, channels]; not owned
-    Features const* V = nullptr; ///< values, of the same frames and tokens as K; not owned
-    std::size_t frame = 0;       ///< entry of the frame axis of both
-};
-
-/// What every frame of a stack attends to: one list of blocks a frame, read in order, as if their tokens stood in a
-/// row.
-template <class Features>
-using attention_sources = std::vector<std::vector<key_value_block<Features>>>;
 
 /// One run of one self-attention module, with the engine's own operations on the engine's own tensors: a processor
 /// never touches an element, so the features may lie on a device. A denoiser makes one for every site and branch of its
@@ -46,10 +33,12 @@ using attention_sources = std::vector<std::vector<key_value_block<Features>>>;
 /// `call.query(f)` `key(f)` `value(f)`  | features_type   | W^Q f, W^K f, W^V f [GR eq. 2], for any stack f
 /// `call.attend(Q, sources)`            | features_type   | F [GR eq. 1]: frame i of Q attends to the tokens of all
 ///                                      |                 | blocks of `sources[i]` in one softmax, head by head; a
-///                                      |                 | block is row `frame` of stacks that may be of other calls
+///                                      |                 | block is row `frame` of stacks that may be of other calls;
+///                                      |                 | `sources.pattern()` says the same for engines that batch
 /// `call.mix(F_hat, F_KF, rows, alpha)` | features_type   | eq. 6: rows covered by `rows[i]` become alpha F_bar + (1 -
 ///                                      |                 | alpha) F_hat with F_bar = rows[i] * F_KF (F_KF read as
-///                                      |                 | [keyframes * tokens, channels]); all others stay F_hat
+///                                      |                 | [keyframes * tokens, channels]); all others stay F_hat.
+///                                      |                 | rows[i].key tells plans apart (plan_key)
 ///
 /// Members may be const or not. F_KF and K, V of a block may be results of a call at the same place for other frames,
 /// which has ended. `mix` may write into F_hat and return it; it reads F_KF alone.
@@ -60,7 +49,9 @@ using attention_sources = std::vector<std::vector<key_value_block<Features>>>;
 /// It does not require that F is taken before or after the output projection: blending commutes with it (weights of a
 /// row sum to 1). It must be taken before the residual is added.
 ///
-/// Optional capabilities: storing_attention_call (attention/feature_storage.hpp), and shaped_features of its features.
+/// Optional capabilities: storing_attention_call (attention/feature_storage.hpp), projecting_attention_call
+/// (attention/projected_features.hpp), and shaped_features of its features. make_padded_rows (blending/padded_rows.hpp)
+/// turns rows and alpha into arrays of fixed width, make_call_rows (blending/call_rows.hpp) into int32 lists.
 /// See also: attention_processor, which consumes it; host_attention_call, the model for features in host memory.
 template <class Call>
 concept attention_call = std::copyable<typename Call::features_type> && std::floating_point<typename Call::real_type> &&

@@ -15,11 +15,7 @@ namespace genrender {
 /// result points to K and V.
 template <class Features>
 attention_sources<Features> extended_attention_sources(Features const& K, Features const& V, std::size_t frames) {
-    std::vector<key_value_block<Features>> all(frames);
-    for (std::size_t j = 0; j < frames; ++j) {
-        all[j] = {&K, &V, j};
-    }
-    return attention_sources<Features>(frames, all);
+    return attention_sources<Features>::stack(K, V, frames);
 }
 
 } // namespace genrender

@@ -41,17 +41,23 @@ concept storing_attention_call = attention_call<Call> &&
     { call.stored(x, storage) } -> std::convertible_to<typename Call::features_type>;
 };
 
+/// Throws value_error if features are to be kept in 16 bits and the engine's call cannot.
+template <attention_call Call>
+void require_storing_call(feature_storage storage) {
+    if (storage != feature_storage::same && !storing_attention_call<Call>) {
+        throw value_error("stored_features: storage is of 16 bits, expected feature_storage::same for an attention "
+                          "call without `stored`");
+    }
+}
+
 /// x in the format. Throws value_error if it is to be another one than it has and the engine's call cannot store it.
 template <attention_call Call>
 typename Call::features_type stored_features(Call& call, typename Call::features_type x, feature_storage storage) {
-    if (storage == feature_storage::same) {
-        return x;
-    }
+    require_storing_call<Call>(storage);
     if constexpr (storing_attention_call<Call>) {
-        return call.stored(x, storage);
+        return storage == feature_storage::same ? x : call.stored(x, storage);
     } else {
-        throw value_error("stored_features: storage is of 16 bits, expected feature_storage::same for an attention "
-                          "call without `stored`");
+        return x;
     }
 }
 
@@ -66,17 +72,23 @@ concept storable_features = requires(Features const& x, feature_storage storage)
     { stored(x, storage) } -> std::convertible_to<Features>;
 };
 
+/// Throws value_error if features are to be kept in 16 bits and there is no `stored` for them.
+template <class Features>
+void require_storable_features(feature_storage storage) {
+    if (storage != feature_storage::same && !storable_features<Features>) {
+        throw value_error("stored_features: storage is of 16 bits, expected feature_storage::same for features without "
+                          "`stored`");
+    }
+}
+
 /// x in the format. Throws value_error if it is to be another one than it has and there is no `stored` for it.
 template <class Features>
 Features stored_features(Features x, feature_storage storage) {
-    if (storage == feature_storage::same) {
-        return x;
-    }
+    require_storable_features<Features>(storage);
     if constexpr (storable_features<Features>) {
-        return stored(x, storage);
+        return storage == feature_storage::same ? x : stored(x, storage);
     } else {
-        throw value_error("stored_features: storage is of 16 bits, expected feature_storage::same for features without "
-                          "`stored`");
+        return x;
     }
 }
 

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/attention_call.hpp>
+#include <genrender/attention/projected_features.hpp>
 
 #include <cstddef>
 
@@ -13,11 +14,7 @@ namespace genrender {
 /// The sources of a network's own self-attention: frame i attends to frame i of K and V. The result points to K and V.
 template <class Features>
 attention_sources<Features> own_attention_sources(Features const& K, Features const& V, std::size_t frames) {
-    attention_sources<Features> sources(frames);
-    for (std::size_t i = 0; i < frames; ++i) {
-        sources[i] = {{&K, &V, i}};
-    }
-    return sources;
+    return attention_sources<Features>::own(K, V, frames);
 }
 
 /// Runs the module as the network has it.
@@ -25,11 +22,8 @@ struct plain_attention {
     /// F of eq. 1 with the queries, keys and values of eq. 2.
     template <attention_call Call>
     typename Call::features_type operator()(Call& call) const {
-        auto const f = call.f();
-        auto const Q = call.query(f);
-        auto const K = call.key(f);
-        auto const V = call.value(f);
-        return call.attend(Q, own_attention_sources(K, V, call.frames().size()));
+        auto const own = projections_of(call, call.f());
+        return call.attend(own.Q, own_attention_sources(own.K, own.V, call.frames().size()));
     }
 
     /// Says what a call lacks that is none.

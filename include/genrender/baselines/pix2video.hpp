@@ -35,6 +35,25 @@ struct pix2video {
         return false;
     }
 
+    /// Lists of sources in the steps of the window, with the stacks of features that earlier_frames keeps besides that of
+    /// the call. The last call of a pass is not filled there.
+    template <class Real>
+    void shape(render_settings<Real> const& settings, run_shapes& shapes) const {
+        std::size_t in_window = 0;
+        for (std::size_t step = 0; step < settings.steps; ++step) {
+            in_window += is_in_window(step, settings.steps, settings.window_begin, settings.window_end) ? 1U : 0U;
+        }
+        shapes.attends_to_stack = shapes.joins_keyframes = shapes.leaves_out = shapes.mixes_rows = false;
+        shapes.row_width = 0;
+        shapes.lists_sources = in_window > 0;
+        shapes.has_plain_steps = in_window < settings.steps;
+        shapes.banks = in_window > 0 ? 2 : 0;
+        shapes.storage = feature_storage::same;
+        if (in_window > 0 && shapes.frames % shapes.frames_per_call > 0) {
+            shapes.last_call = shapes.frames % shapes.frames_per_call;
+        }
+    }
+
     /// Estimates all frames; outside the window every frame by itself.
     template <class Passes>
     void operator()(Passes const& passes) const {

@@ -63,11 +63,10 @@ public:
             require_value(frames[i].value == next, "previous_frame_attention", "frames", frames[i].value,
                           (std::to_string(next) + ", the frame that comes next").c_str());
         }
-        auto const f = call.f();
-        auto const Q = call.query(f);
+        projected_features<Features> const projected = projections_of(call, call.f());
         keyframe_features<Features> own;
-        own.K_KF = call.key(f);
-        own.V_KF = call.value(f);
+        own.K_KF = projected.K;
+        own.V_KF = projected.V;
 
         key_value_block<Features> anchor{&*own.K_KF, &*own.V_KF, 0};
         auto previous = anchor;
@@ -83,7 +82,7 @@ public:
             }
             previous = {&*own.K_KF, &*own.V_KF, i};
         }
-        Features F = call.attend(Q, sources);
+        Features F = call.attend(projected.Q, sources);
         kept_->put(call.place(), std::move(own));
         return F;
     }

@@ -8,7 +8,9 @@
 #include <genrender/baselines/token_propagation.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/pipeline/render_settings.hpp>
+#include <genrender/sampling/run_shapes.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -39,6 +41,18 @@ struct tokenflow {
     template <class Real>
     bool uses_correspondence(render_settings<Real> const&) const {
         return true;
+    }
+
+    /// Eq. 3 among keyframes, whose outputs are mixed in; a row takes from two keyframes at most, a token of each.
+    template <class Real>
+    void shape(render_settings<Real> const&, run_shapes& shapes) const {
+        auto const has_keyframes = shapes.keyframes > 0;
+        shapes.attends_to_stack = has_keyframes;
+        shapes.joins_keyframes = shapes.leaves_out = shapes.lists_sources = false;
+        shapes.mixes_rows = has_keyframes;
+        shapes.row_width = std::min<std::size_t>(shapes.keyframes, 2);
+        shapes.banks = has_keyframes ? 1 : 0;
+        shapes.storage = has_keyframes ? shapes.storage : feature_storage::same;
     }
 
     /// Estimates all frames; outside the window every frame by itself. A keyframe runs again with the others and takes

@@ -10,7 +10,9 @@
 #include <genrender/core/index.hpp>
 #include <genrender/core/sparse_rows.hpp>
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -26,16 +28,19 @@ public:
     /// No plans, of no sites.
     blend_plans() = default;
 
-    /// No plans yet; `grid_of_site` holds the feature grid of each site, in the order of the denoiser's sites.
-    explicit blend_plans(std::vector<grid_extents> grid_of_site) : grid_of_site_(std::move(grid_of_site)) {}
+    /// No plans yet; `grid_of_site` holds the feature grid of each site, in the order of the denoiser's sites. Rows carry
+    /// keys of `evaluation`, a number of next_evaluation; none carry none.
+    explicit blend_plans(std::vector<grid_extents> grid_of_site, std::optional<std::uint64_t> evaluation = {})
+        : grid_of_site_(std::move(grid_of_site)), evaluation_(evaluation) {}
 
     /// Keeps the plan of a frame at the sites of a grid, unless there is one.
     void add(grid_extents grid, frame_index frame, blend_plan<Real> plan) {
         plans_.emplace(std::pair(grid, frame), std::move(plan));
     }
 
-    /// The plan's rows of a frame at a site: F_bar^i = rows * F_KF. They view the plan, which moves with its owner
-    /// without changing its place in memory. Throws value_error if there is no such site or plan.
+    /// The plan's rows of a frame at a site: F_bar^i = rows * F_KF, with the key of grid, frame and evaluation. They
+    /// view the plan, which moves with its owner without changing its place in memory. Throws value_error if there is no
+    /// such site or plan.
     sparse_rows<Real> rows(site_index site, frame_index frame) const {
         require_value(site.value < grid_of_site_.size(), "blend_plans", "site", site.value,
                       "one of the denoiser's sites");
@@ -45,7 +50,11 @@ public:
             throw value_error("blend_plans: frame is " + std::to_string(frame.value) +
                               ", expected one with a plan for " + extents_text({grid.height, grid.width}) + " tokens");
         }
-        return found->second.rows();
+        auto rows = found->second.rows();
+        if (evaluation_) {
+            rows.key = plan_key{grid, frame, *evaluation_};
+        }
+        return rows;
     }
 
     /// The rows of several frames at a site, in their order. Throws as above.
@@ -60,6 +69,7 @@ public:
 
 private:
     std::vector<grid_extents> grid_of_site_;
+    std::optional<std::uint64_t> evaluation_;
     std::map<std::pair<grid_extents, frame_index>, blend_plan<Real>> plans_;
 };
 

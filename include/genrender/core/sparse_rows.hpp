@@ -4,8 +4,11 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/plan_key.hpp>
+
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace genrender {
@@ -18,6 +21,9 @@ struct sparse_rows {
     std::span<std::uint32_t const> offsets; ///< rows + 1 of them, rising from 0
     std::span<std::uint32_t const> sources; ///< number of the source row, one per entry
     std::span<Real const> weights;          ///< one per entry
+    /// What rows that `render` hands over are told apart by: equal keys mean equal arrays. None for rows of nobody's
+    /// plan.
+    std::optional<plan_key> key{};
 
     /// Number of rows, covered or not.
     std::size_t row_count() const { return offsets.empty() ? 0 : offsets.size() - 1; }

@@ -36,7 +36,8 @@ struct correspondence_settings {
     texel_grid_settings texels{};                              ///< of correspondence_kind::texel_grid
 };
 
-/// One of the library's correspondence maps behind one type: a model of weighted_ and graded_correspondence_map.
+/// One of the library's correspondence maps behind one type: a model of weighted_, bounded_ and
+/// graded_correspondence_map.
 template <std::size_t D>
 class chosen_correspondence {
     using footprints = footprint_map<D>;
@@ -87,6 +88,12 @@ public:
         } else if (auto const token = token_at(frame, point)) {
             visit(*token, 1.0);
         }
+    }
+
+    /// The most tokens that a frame shows a point by: those of texels, 1 of footprints.
+    std::size_t most_tokens() const {
+        auto const* const texels = std::get_if<texel_grid>(&map_);
+        return texels != nullptr ? texels->most_tokens() : 1;
     }
 
     /// Texels do not tell how well they are seen: all alike.

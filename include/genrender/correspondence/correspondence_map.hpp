@@ -90,6 +90,17 @@ concept weighted_correspondence_map = correspondence_map<Map> &&
     map.visit_tokens(i, point, visit);
 };
 
+/// A weighted_correspondence_map that says how many tokens it knows a point by, an optional capability: it bounds the
+/// rows of plans (max_row_width). Of others nothing less than all tokens of a frame is known.
+///
+/// expression          | type   | meaning
+/// --------------------|--------|---------------------------------------------------------------------------------
+/// `map.most_tokens()` | size_t | no visit_tokens visits more tokens than these
+template <class Map>
+concept bounded_correspondence_map = weighted_correspondence_map<Map> && requires(Map const& map) {
+    { map.most_tokens() } -> std::convertible_to<std::size_t>;
+};
+
 /// A correspondence_map that says how well a frame shows a point, an optional capability: with others all keyframes
 /// that see a point weigh alike, whatever `settings.average` says.
 ///

@@ -94,6 +94,16 @@ public:
         }
     }
 
+    /// Tokens of the texel that most tokens of one frame show; 1 with texel_reading::nearest_sample, where some frame
+    /// shows a texel.
+    std::size_t most_tokens() const {
+        std::size_t most = 0;
+        for (auto const& frame : visible_) {
+            most = std::max(most, frame.most_entries());
+        }
+        return most;
+    }
+
 private:
     static constexpr std::uint32_t not_covered = 0xFFFFFFFFU;
 

@@ -103,6 +103,15 @@ public:
         return std::span(entries_).subspan(offsets_[rank], offsets_[rank + 1] - offsets_[rank]);
     }
 
+    /// Tokens of the slot that most tokens show; 0 where the frame sees none.
+    std::size_t most_entries() const {
+        std::size_t most = 0;
+        for (std::size_t rank = 0; rank + 1 < offsets_.size(); ++rank) {
+            most = std::max<std::size_t>(most, offsets_[rank + 1] - offsets_[rank]);
+        }
+        return most;
+    }
+
 private:
     explicit visible_texels(std::size_t slots) : words_((slots + 63) / 64) {}
 

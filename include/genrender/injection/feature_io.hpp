@@ -39,7 +39,8 @@ feature_inputs<Features, Real> inputs_at(plain_attention const&, attention_place
     return {};
 }
 
-/// The extra inputs of the keyframe pass.
+/// The extra inputs of the keyframe pass. Throws value_error if features of the place are to be kept in 16 bits and have
+/// no `stored`.
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(recorder<Features> const& pass, attention_place place,
                                          std::span<frame_index const>) {

@@ -38,24 +38,23 @@ public:
 
     /// F_out of eq. 6, where F_hat attends over the sources of eq. 5. Throws value_error if the keyframe pass ran as a
     /// static graph, which gives no K_KF, and shape_error if K_KF or V_KF is of another number of frames than there are
-    /// keyframes (pre_attention_sources).
+    /// keyframes (injected_attention_sources).
     template <attention_call Call>
     Features operator()(Call& call) const {
         auto const frames = call.frames();
         auto const* const kept = bank_->find(call.place());
-        auto const f = call.f();
-        auto const Q = call.query(f);
-        auto const K = call.key(f);
-        auto const V = call.value(f);
-        auto sources = own_attention_sources(K, V, frames.size());
+        projected_features<Features> const own = projections_of(call, call.f());
+        auto sources = own_attention_sources(own.K, own.V, frames.size());
         if (kept != nullptr && settings_.pre_attention) {
             require_value(kept->K_KF && kept->V_KF, "injector", "K_KF", "missing", "keyframes recorded by callbacks");
-            for (std::size_t i = 0; i < frames.size(); ++i) {
-                sources[i] =
-                    pre_attention_sources(K, V, i, *kept->K_KF, *kept->V_KF, keyframes_.size(), left_out(frames[i]));
+            std::vector<std::optional<std::size_t>> drops;
+            for (auto const frame : frames) {
+                drops.push_back(left_out(frame));
             }
+            sources =
+                injected_attention_sources(own.K, own.V, *kept->K_KF, *kept->V_KF, keyframes_.size(), std::move(drops));
         }
-        Features F_hat = call.attend(Q, sources);
+        Features F_hat = call.attend(own.Q, sources);
         if (kept == nullptr || !settings_.post_attention) {
             return F_hat;
         }

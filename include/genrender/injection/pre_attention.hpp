@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace genrender {
@@ -45,6 +46,17 @@ pre_attention_sources(Features const& K, Features const& V, std::size_t own, Fea
         }
     }
     return sources;
+}
+
+/// What all frames of K and V attend to, each as pre_attention_sources has it; frame i drops the keyframe left_out[i], an
+/// entry for each frame of the stack. Throws as pre_attention_sources does.
+template <class Features>
+attention_sources<Features> injected_attention_sources(Features const& K, Features const& V, Features const& K_KF,
+                                                       Features const& V_KF, std::size_t keyframes,
+                                                       std::vector<std::optional<std::size_t>> left_out) {
+    detail::require_frames("pre_attention_sources", "K_KF", K_KF, keyframes);
+    detail::require_frames("pre_attention_sources", "V_KF", V_KF, keyframes);
+    return attention_sources<Features>::own_and_joined(K, V, K_KF, V_KF, keyframes, std::move(left_out));
 }
 
 } // namespace genrender

@@ -24,7 +24,10 @@ struct keyframe_features {
     std::optional<Features> F_KF; ///< output of the module
 };
 
-/// Holds one keyframe_features per site and branch. Different places may be filled at the same time.
+/// Holds one keyframe_features per site and branch. Different places may be filled at the same time. The library's
+/// methods have ended the bank of an evaluation, and with it every handle that an engine gave out for it, before the
+/// keyframe pass of the next evaluation begins; run_shapes::banks counts those alive at a time. An engine may therefore
+/// write the features of a place over those of the pass before.
 template <class Features>
 class feature_bank {
 public:

@@ -29,23 +29,24 @@ public:
              feature_storage storage = feature_storage::same)
         : bank_(&bank), takes_part_(std::move(takes_part)), extended_(extended), storage_(storage) {}
 
-    /// F of eq. 1 over the sources of eq. 3; keeps K_KF, V_KF and F_KF of the place. Throws value_error if the call
-    /// cannot store features in the format asked for.
+    /// F of eq. 1 over the sources of eq. 3; keeps K_KF, V_KF and F_KF of the place, in 16 bits as `stored` gives them,
+    /// which is asked in this order. Throws value_error before anything is computed if the call cannot store features
+    /// in the format asked for.
     template <attention_call Call>
     Features operator()(Call& call) const {
-        auto const f = call.f();
         auto const frames = call.frames().size();
         auto const is_recorded = takes_part_(call.place());
-        auto const Q = call.query(f);
-        Features const K = call.key(f);
-        Features const V = call.value(f);
-        auto const sources =
-            is_recorded && extended_ ? extended_attention_sources(K, V, frames) : own_attention_sources(K, V, frames);
-        Features F = call.attend(Q, sources);
+        if (is_recorded) {
+            require_storing_call<Call>(storage_);
+        }
+        projected_features<Features> const own = projections_of(call, call.f());
+        auto const sources = is_recorded && extended_ ? extended_attention_sources(own.K, own.V, frames)
+                                                      : own_attention_sources(own.K, own.V, frames);
+        Features F = call.attend(own.Q, sources);
         if (is_recorded) {
             keyframe_features<Features> kept;
-            kept.K_KF = stored_features(call, K, storage_);
-            kept.V_KF = stored_features(call, V, storage_);
+            kept.K_KF = stored_features(call, own.K, storage_);
+            kept.V_KF = stored_features(call, own.V, storage_);
             kept.F_KF = stored_features(call, F, storage_);
             bank_->put(call.place(), std::move(kept));
         }
@@ -57,8 +58,14 @@ public:
         requires(!attention_call<Call>)
     auto operator()(Call&) const { require_attention_call<Call>(); }
 
-    /// Whether features of a place are kept.
-    bool records(attention_place place) const { return takes_part_(place); }
+    /// Whether features of a place are kept. Throws value_error if they are and `record` could not store them.
+    bool records(attention_place place) const {
+        auto const takes_part = takes_part_(place);
+        if (takes_part) {
+            require_storable_features<Features>(storage_);
+        }
+        return takes_part;
+    }
 
     /// Where nothing is kept.
     bool is_plain_at(attention_place place) const { return !takes_part_(place); }

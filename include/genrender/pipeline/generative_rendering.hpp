@@ -9,6 +9,7 @@
 #include <genrender/injection/injector.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/pipeline/render_settings.hpp>
+#include <genrender/sampling/run_shapes.hpp>
 
 #include <cstddef>
 #include <span>
@@ -45,6 +46,20 @@ struct generative_rendering {
             }
         }
         return false;
+    }
+
+    /// Eqs. 3, 5 and 6 as the settings switch them on.
+    template <class Real>
+    void shape(render_settings<Real> const& settings, run_shapes& shapes) const {
+        auto const has_keyframes = shapes.keyframes > 0;
+        shapes.attends_to_stack = has_keyframes && settings.injection.pre_attention;
+        shapes.joins_keyframes = shapes.attends_to_stack;
+        shapes.leaves_out = shapes.joins_keyframes && !settings.injection.keeps_own_copy;
+        shapes.mixes_rows = has_keyframes && settings.injection.post_attention;
+        shapes.row_width = shapes.mixes_rows ? shapes.row_width : 0;
+        shapes.lists_sources = false;
+        shapes.banks = has_keyframes ? 1 : 0;
+        shapes.storage = has_keyframes ? shapes.storage : feature_storage::same;
     }
 
     /// The body of Alg. 1's loop.

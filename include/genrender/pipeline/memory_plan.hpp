@@ -188,8 +188,10 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
 
     // What does not: the keyframes' features and the calls under way.
     auto const of_frame = std::max(run.network_bytes.value_or(0), 5 * largest_site * sizeof(Real)); // f, Q, K, V, F
-    auto const calls = std::min(std::max<std::size_t>(run.calls_at_once, 1), run.frames);
-    auto const at_once = std::min(calls * std::min(settings.frames_per_call, run.frames), run.frames);
+    auto calls = std::min(std::max<std::size_t>(run.calls_at_once, 1), run.frames);
+    calls = settings.calls_at_once > 0 ? std::min(calls, settings.calls_at_once) : calls;
+    auto const of_calls = calls * stack_size(settings, run.frames);
+    auto const at_once = settings.fills_last_call ? of_calls : std::min(of_calls, run.frames);
     bytes.keyframe_latents = 2 * m * latent_bytes;
     bytes.residuals = settings.reuses_keyframes ? m * run.residual_bytes.value_or(0) : 0;
     std::size_t making = 0;

@@ -12,8 +12,11 @@
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/maps/cell_extents.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
+#include <genrender/pipeline/shapes_of_run.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
+#include <genrender/sampling/run_shapes.hpp>
 #include <genrender/sampling/sampler.hpp>
+#include <genrender/sampling/storing_denoiser.hpp>
 
 #include <chrono>
 #include <concepts>
@@ -34,6 +37,10 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
     require_value(settings.steps > 0, "render", "settings.steps", settings.steps, "at least one step");
     require_value(settings.frames_per_call > 0, "render", "settings.frames_per_call", settings.frames_per_call,
                   "at least one frame");
+    constexpr std::size_t most_filled = 65536;
+    require_value(!settings.fills_last_call || settings.frames_per_call <= most_filled, "render",
+                  "settings.frames_per_call", settings.frames_per_call,
+                  "at most 65536 frames where the last call is filled");
     auto const require_window = [](char const* argument, Real begin, Real end) {
         if (!(begin >= 0 && end <= 1 && begin <= end)) {
             throw value_error(std::string("render: ") + argument + " is [" + std::to_string(begin) + ", " +
@@ -176,8 +183,8 @@ GENRENDER_INSTANCE(make_blend_plan<double, chosen_correspondence<2>>);
 ///     auto const flow = render<tokenflow>(phi, UV, {.settings = settings});
 ///     auto const own = render<generative_rendering, my_map>(phi, UV, {.settings = settings, .make_map = make_my_map});
 ///
-/// Throws value_error or shape_error for arguments that do not fit, before anything is run, and what the denoiser
-/// throws. A run that its observer ends returns what there is.
+/// A preparable_denoiser is told the shapes of the run before its first call. Throws value_error or shape_error for
+/// arguments that do not fit, before anything is run, and what the denoiser throws. A run that its observer ends returns what there is.
 template <class Method = generative_rendering, class Map = void, class Phi, class Maps>
 render_result<typename detail::real_type_of<Phi>::type>
 render(Phi const& phi, Maps const& UV,
@@ -226,6 +233,9 @@ render(Phi const& phi, Maps const& UV,
             return arguments.make_map(extents);
         });
         report.add_seconds(0, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        auto const shapes = shapes_of_run(phi, settings, N, maps, method);
+        require_storage<Phi>(shapes.storage);
+        prepare_denoiser(phi, shapes);
 
         // for t = T, ..., 1: what the method does, for alg. 1 keyframes, features, blending and injection; normalisation
         progress_meter meter(settings.steps, total, arguments.observer);

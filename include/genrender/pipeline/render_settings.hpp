@@ -14,6 +14,7 @@
 #include <genrender/normalization/adain.hpp>
 #include <genrender/sampling/sampler.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -60,7 +61,19 @@ struct render_settings {
     /// frames to the bit in less time, for memory that memory_plan tells.
     bool reuses_keyframes = true;
     std::size_t frames_per_call = 1; ///< frames that the injected pass gives the denoiser at once
+    /// Whether the last call of a pass is given as many frames too, for graphs of one shape: the last frame again and
+    /// again, whose further estimates are dropped. Not where frames are denoised in order (pix2video).
+    bool fills_last_call = false;
+    /// How many calls of the denoiser may run at the same time; the run's loop then shares the library's own work alone
+    /// among more threads. 0 leaves it to the loop; 1 is for an engine with one graph, context or device.
+    std::size_t calls_at_once = 0;
 };
+
+/// Frames that a call of a pass over `frames` frames gives the denoiser, but for a shorter last one.
+template <class Real>
+std::size_t stack_size(render_settings<Real> const& settings, std::size_t frames) {
+    return settings.fills_last_call ? settings.frames_per_call : std::min(settings.frames_per_call, frames);
+}
 
 /// Whether a step lies in the window [begin, end) of shares of all steps.
 template <class Real>

@@ -8,6 +8,7 @@
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/blending/blend_plans.hpp>
 #include <genrender/core/parallel.hpp>
+#include <genrender/core/plan_key.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
 #include <genrender/keyframes/recorder.hpp>
@@ -18,6 +19,7 @@
 #include <genrender/sampling/denoiser.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -113,18 +115,33 @@ public:
         }
     }
 
-    /// One plan per feature resolution and frame, each a blend_plan made by `make_plan(map, frame)`.
+    /// One plan per feature resolution and frame, each a blend_plan made by `make_plan(map, frame)`, several at the same
+    /// time if the loop has threads for them. A frame that comes twice has one plan. Rows carry keys of this pass.
     template <class MakePlan>
     blend_plans<real_type> make_plans(std::span<frame_index const> frames, MakePlan const& make_plan) const {
         std::vector<grid_extents> grid_of_site;
         for (auto const& site : run_->phi->sites()) {
             grid_of_site.push_back(site.grid);
         }
-        blend_plans<real_type> plans(std::move(grid_of_site));
+        blend_plans<real_type> plans(std::move(grid_of_site), evaluation_);
+        std::vector<frame_index> different(frames.begin(), frames.end());
+        std::sort(different.begin(), different.end());
+        different.erase(std::unique(different.begin(), different.end()), different.end());
+        struct wanted_plan {
+            grid_extents grid;
+            Map const* map;
+            frame_index frame;
+            blend_plan<real_type> plan;
+        };
+        std::vector<wanted_plan> wanted;
         for (auto const& [grid, map] : *run_->maps) {
-            for (auto const frame : frames) {
-                plans.add(grid, frame, make_plan(map, frame));
+            for (auto const frame : different) {
+                wanted.push_back({grid, &map, frame, {}});
             }
+        }
+        run_->loop(wanted.size(), [&](std::size_t n) { wanted[n].plan = make_plan(*wanted[n].map, wanted[n].frame); });
+        for (auto& [grid, map, frame, plan] : wanted) {
+            plans.add(grid, frame, std::move(plan));
         }
         return plans;
     }
@@ -135,16 +152,17 @@ public:
     }
 
     /// z^i <- Phi(z^i, D^i, c) for every frame, `settings().frames_per_call` at once, with the processor that
-    /// `make_processor(frames)` gives. Calls may run at the same time.
+    /// `make_processor(frames)` gives. Calls may run at the same time, `settings().calls_at_once` of them. If
+    /// `settings().fills_last_call`, the frames of the last call may end with several times the last frame.
     template <class MakeProcessor>
     void denoise_frames(MakeProcessor const& make_processor) const {
-        denoise_frames(run_->loop, make_processor);
+        denoise_frames(run_->loop, true, make_processor);
     }
 
     /// The same one call after the other, from the first frame on, for methods in which a frame needs the one before.
     template <class MakeProcessor>
     void denoise_frames_in_order(MakeProcessor const& make_processor) const {
-        denoise_frames(sequential_loop{}, make_processor);
+        denoise_frames(sequential_loop{}, false, make_processor);
     }
 
     /// Every frame by itself, as the network has it.
@@ -188,33 +206,80 @@ private:
         }
     }
 
+    /// One call of the denoiser for the frames from `first` on, repeated up to `count` where the animation ends before.
+    /// Gives the seconds of the denoiser.
     template <class MakeProcessor>
-    void denoise_frames(any_loop const& loop, MakeProcessor const& make_processor) const {
+    double run_call(std::size_t first, std::size_t count, MakeProcessor const& make_processor) const {
+        auto const own = std::min(count, frame_count() - first);
+        std::vector<frame_index> frames;
+        for (std::size_t i = 0; i < count; ++i) {
+            frames.push_back({static_cast<std::uint32_t>(first + std::min(i, own - 1))});
+        }
+        auto const& processor = make_processor(std::span<frame_index const>(frames));
+        auto const x0 = to_view(*x0_).slice(first, own);
+        auto const z = to_view(*z_).slice(first, own);
+        auto begin = clock::now();
+        if (own == count) {
+            estimate(x0, z, frames, processor);
+            return seconds_since(begin);
+        }
+        auto const& shape = z_->shape();
+        auto filled_x0 = latents<real_type>::from_shape({count, shape[1], shape[2], shape[3]});
+        auto filled_z = filled_x0;
+        for (std::size_t i = 0; i < count; ++i) {
+            copy(to_view(filled_z)[i], z[std::min(i, own - 1)]);
+        }
+        begin = clock::now();
+        estimate(to_view(filled_x0), to_view(std::as_const(filled_z)), frames, processor);
+        auto const seconds = seconds_since(begin);
+        copy(x0, to_view(std::as_const(filled_x0)).slice(0, own));
+        return seconds;
+    }
+
+    /// Runs `body` for each call, as many at once as the settings let.
+    template <class Body>
+    void run_calls(any_loop const& loop, std::size_t calls, Body const& body) const {
+        auto const lanes = settings().calls_at_once;
+        if (lanes == 0 || lanes >= calls) {
+            loop(calls, body);
+            return;
+        }
+        // As many bodies of the loop as calls may run, so that no thread ever waits for another's call to end.
+        std::atomic<std::size_t> next{0};
+        loop(lanes, [&](std::size_t) {
+            try {
+                for (auto call = next++; call < calls; call = next++) {
+                    body(call);
+                }
+            } catch (...) {
+                next = calls;
+                throw;
+            }
+        });
+    }
+
+    /// The pass over all frames; `fills` says whether the last call may be given a frame several times.
+    template <class MakeProcessor>
+    void denoise_frames(any_loop const& loop, bool fills, MakeProcessor const& make_processor) const {
         auto const count = frame_count();
-        auto const stride = std::min(settings().frames_per_call, count);
+        auto const stride = fills ? stack_size(settings(), count) : std::min(settings().frames_per_call, count);
+        evaluation_ = next_evaluation();
         run_->meter->begin(step_, render_pass::frames, count);
         auto const pass_start = clock::now();
         std::mutex mutex;
         double in_denoiser = 0; // Seconds of threads, which share the pass's seconds by the clock on the wall.
         double outside = 0;
-        loop((count + stride - 1) / stride, [&](std::size_t call) {
+        run_calls(loop, (count + stride - 1) / stride, [&](std::size_t call) {
             auto const start = clock::now();
             auto const first = call * stride;
-            std::vector<frame_index> frames;
-            for (auto i = first; i < std::min(first + stride, count); ++i) {
-                frames.push_back({static_cast<std::uint32_t>(i)});
-            }
-            auto const& processor = make_processor(std::span<frame_index const>(frames));
-            auto const begin = clock::now();
-            estimate(to_view(*x0_).slice(first, frames.size()), to_view(*z_).slice(first, frames.size()), frames,
-                     processor);
-            auto const denoiser = seconds_since(begin);
+            auto const own = std::min(stride, count - first);
+            auto const denoiser = run_call(first, fills && settings().fills_last_call ? stride : own, make_processor);
             {
                 std::lock_guard const lock(mutex);
                 in_denoiser += denoiser;
                 outside += seconds_since(start) - denoiser;
             }
-            run_->meter->add(frames.size());
+            run_->meter->add(own);
         });
         auto const share = in_denoiser / std::max(in_denoiser + outside, 1e-12);
         auto const seconds = seconds_since(pass_start);
@@ -226,7 +291,8 @@ private:
     latents<real_type> const* z_;
     real_type sigma_;
     std::size_t step_;
-    mutable residuals_of<Phi> lent_{}; // written by the keyframe pass, before frames are denoised
+    mutable std::uint64_t evaluation_ = 0; // of the pass under way; written before its calls
+    mutable residuals_of<Phi> lent_{};     // written by the keyframe pass, before frames are denoised
 };
 
 } // namespace genrender

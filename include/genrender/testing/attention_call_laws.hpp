@@ -17,8 +17,10 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace genrender::testing {
@@ -85,10 +87,10 @@ typename Call::features_type attend_to(Call& call, MakeSources const& make_sourc
 
 } // namespace detail
 
-/// Checks the laws of attention_call, and of storing_attention_call where the calls are such, on the calls that `phi`
+/// Checks the laws of attention_call, and of storing_ and projecting_attention_call where the calls are such, on the calls that `phi`
 /// makes at noise level sigma for the frames of the trial. The library cannot look into an engine's features, so every
 /// law is told by estimates that must be equal; a denoiser whose estimates do not depend on its attention passes
-/// whatever its calls do. For denoisers that call their processor back; about 13 calls of all frames. Throws
+/// whatever its calls do. For denoisers that call their processor back; about 20 calls of all frames. Throws
 /// value_error for a trial of fewer than 2 frames, and what the denoiser throws.
 template <denoiser Phi>
 law_report check_attention_call_laws(Phi const& phi, typename Phi::real_type sigma, denoiser_trial const& trial = {}) {
@@ -154,6 +156,35 @@ law_report check_attention_call_laws(Phi const& phi, typename Phi::real_type sig
     detail::require_same(report, "attention_call: attend depends on the order of blocks by rounding alone",
                          "with blocks reversed, x0", trials.estimate(backwards), trials.estimate(in_order),
                          trial.tolerance);
+
+    // The same lists without a pattern, which writing to them forgets.
+    auto const only_lists = [](attention_sources<features> sources) {
+        for (auto& blocks : sources) {
+            blocks.shrink_to_fit();
+        }
+        return sources;
+    };
+    auto const require_pattern = [&](char const* meaning, auto const& make_sources) {
+        auto const by_pattern = [&](auto& call) { return detail::attend_to(call, make_sources); };
+        auto const by_lists = [&](auto& call) {
+            return detail::attend_to(call, [&](features const& K, features const& V, std::size_t count) {
+                return only_lists(make_sources(K, V, count));
+            });
+        };
+        detail::require_same(report, "attention_call: attend gives by sources.pattern() what it gives by the lists",
+                             meaning, trials.estimate(by_pattern), trials.estimate(by_lists), trial.tolerance);
+    };
+    require_pattern("with own sources, x0", own_attention_sources<features>);
+    require_pattern("with sources of the stack, x0", extended_attention_sources<features>);
+    require_pattern("with joined sources, of which frames leave one out, x0",
+                    [](features const& K, features const& V, std::size_t count) {
+                        std::vector<std::optional<std::size_t>> left_out(count);
+                        left_out.back() = 0;
+                        return attention_sources<features>::own_and_joined(K, V, K, V, count, std::move(left_out));
+                    });
+    auto const one_by_one = [&](auto& call) { return detail::attend_to(call, own_attention_sources<features>); };
+    detail::require_same(report, "projecting_attention_call: project gives what query, key and value give", "x0",
+                         expected, trials.estimate(one_by_one), trial.tolerance);
 
     // -- handles that outlive their call, and the stack that they are of
     std::vector<frame_index> reversed(trials.frames.rbegin(), trials.frames.rend());
