@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The Python module: everything of the library that is not the loop around the network, on NumPy arrays.
 #include "animation_maps.hpp"
+#include "arrays.hpp"
 #include "padded_rows.hpp"
 
 #include <genrender/blending/blend_plan.hpp>
@@ -27,7 +28,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -45,50 +45,6 @@ using namespace nb::literals;
 
 namespace genrender::python {
 namespace {
-
-template <class T, std::size_t Rank>
-using input = nb::ndarray<T const, nb::ndim<Rank>, nb::c_contig, nb::device::cpu>;
-template <class T, std::size_t Rank>
-using output = nb::ndarray<nb::numpy, T, nb::ndim<Rank>>;
-
-/// The elements of an array of Python's.
-template <class T, std::size_t Rank, class Array>
-strided_view<T, Rank> view_of(Array const& array) {
-    std::array<std::size_t, Rank> extents;
-    for (std::size_t axis = 0; axis < Rank; ++axis) {
-        extents[axis] = array.shape(axis);
-    }
-    return {array.data(), extents};
-}
-
-/// A NumPy array that owns `elements`, a vector or tensor.
-template <std::size_t Rank, class Elements>
-auto array_of(Elements elements, std::array<std::size_t, Rank> const& shape) {
-    using T = std::remove_cvref_t<decltype(*elements.data())>;
-    auto kept = std::make_unique<Elements>(std::move(elements));
-    auto* const data = kept->data();
-    nb::capsule const owner(kept.get(), [](void* object) noexcept { delete static_cast<Elements*>(object); });
-    kept.release();
-    return output<T, Rank>(data, Rank, shape.data(), owner);
-}
-
-template <class T, std::size_t Rank>
-auto array_of(tensor<T, Rank> elements) {
-    std::array<std::size_t, Rank> shape;
-    std::copy_n(elements.shape().begin(), Rank, shape.begin());
-    return array_of<Rank>(std::move(elements), shape);
-}
-
-/// A copy of an array of Python's that has the shape of `expected`, which may be of no frame.
-template <class T, std::size_t Rank>
-tensor<T, Rank> tensor_of(char const* name, input<T, Rank> const& array,
-                          std::array<std::size_t, Rank> const& expected) {
-    auto const from = view_of<T const, Rank>(array);
-    require_extents("Maps", name, from.extents(), expected);
-    auto result = tensor<T, Rank>::from_shape(expected);
-    std::copy_n(from.data(), from.size(), result.data());
-    return result;
-}
 
 /// The value that a name stands for.
 template <class Value>
@@ -126,15 +82,15 @@ std::shared_ptr<animation_maps> make_maps(input<float, 4> const& uv, input<std::
     auto const [frames, height, width] = shape;
     require_value(coverage.size() > 0, "Maps", "coverage", extents_text(shape), "at least one frame and pixel");
     auto maps = std::make_shared<animation_maps>();
-    maps->uv.uv = tensor_of("uv", uv, {frames, height, width, 2});
-    maps->uv.object = tensor_of("object", object, shape);
-    maps->uv.coverage = tensor_of("coverage", coverage, shape);
+    maps->uv.uv = tensor_of<float, 4>("uv", uv, {frames, height, width, 2});
+    maps->uv.object = tensor_of<std::uint32_t, 3>("object", object, shape);
+    maps->uv.coverage = tensor_of<std::uint8_t, 3>("coverage", coverage, shape);
     if (depth) {
-        maps->depth.depth = tensor_of("depth", *depth, shape);
+        maps->depth.depth = tensor_of<float, 3>("depth", *depth, shape);
         maps->depth.coverage = maps->uv.coverage;
     }
     if (position) {
-        maps->position = tensor_of("position", *position, {frames, height, width, 3});
+        maps->position = tensor_of<float, 4>("position", *position, {frames, height, width, 3});
     }
     return maps;
 }
@@ -302,7 +258,7 @@ nb::object sample_latents(std::string const& sampler, nb::callable const& D, nb:
         .array;
 }
 
-std::tuple<double, double, double> scalings(std::string const& predicted, double sigma) {
+std::tuple<double, double, double> scaling_factors(std::string const& predicted, double sigma) {
     auto const kind = named("scalings", "prediction", predicted,
                             {std::pair("epsilon", prediction::epsilon),
                              {"v_prediction", prediction::velocity},
@@ -344,13 +300,16 @@ NB_MODULE(_genrender, m) {
             "width", [](animation_maps const& maps) { return maps.uv.grid().width; }, "Columns of pixels.")
         .def_ro("notes", &animation_maps::notes, "Sentences of the reader of files.")
         .def_prop_ro(
-            "uv", [](animation_maps const& maps) { return array_of(maps.uv.uv); }, "A copy.")
+            "uv", [](animation_maps const& maps) { return array_of(maps.uv.uv); }, nb::rv_policy::move, "A copy.")
         .def_prop_ro(
-            "object", [](animation_maps const& maps) { return array_of(maps.uv.object); }, "A copy.")
+            "object", [](animation_maps const& maps) { return array_of(maps.uv.object); }, nb::rv_policy::move,
+            "A copy.")
         .def_prop_ro(
-            "coverage", [](animation_maps const& maps) { return array_of(maps.uv.coverage); }, "A copy.")
+            "coverage", [](animation_maps const& maps) { return array_of(maps.uv.coverage); }, nb::rv_policy::move,
+            "A copy.")
         .def_prop_ro(
-            "depth", [](animation_maps const& maps) { return array_of(maps.known_depth().depth); }, "A copy.")
+            "depth", [](animation_maps const& maps) { return array_of(maps.known_depth().depth); }, nb::rv_policy::move,
+            "A copy.")
         .def("inverse_depth", &inverse_depth, "height"_a, "width"_a,
              "What a depth ControlNet sees [frames, height, width]: 1 nearest, 0 farthest of all frames.")
         .def("background", &background, "height"_a, "width"_a,
@@ -394,7 +353,8 @@ NB_MODULE(_genrender, m) {
           "The keyframes of a step, shuffled: a pure function of its arguments.");
     m.def("karras_schedule", &karras_schedule<double>, "steps"_a, "sigma_min"_a = 0.0292, "sigma_max"_a = 14.6146,
           "rho"_a = 7.0, "The steps + 1 noise levels of a run, the last of them 0.");
-    m.def("scalings", &scalings, "prediction"_a, "sigma"_a, "(c_skip, c_out, c_in): D = c_skip z + c_out F(c_in z).");
+    m.def("scalings", &scaling_factors, "prediction"_a, "sigma"_a,
+          "(c_skip, c_out, c_in): D = c_skip z + c_out F(c_in z).");
     m.def("normalize_latents", &normalize, "z"_a.noconvert(), "background"_a, "statistics"_a = "mean",
           "Gives every frame's background the statistics of frame 0's, in place. Returns frames without background.");
     m.def("sample", &sample_latents, "sampler"_a, "D"_a, "z"_a, "sigmas"_a, "after_step"_a = nb::none(),
