@@ -82,7 +82,7 @@ class Run:
             self.schedule = NoiseSchedule(pipe.scheduler.alphas_cumprod.double().tolist())
         self.branches = 1 if self.guidance_scale == 1 else 2
         text, negative = pipe.encode_prompt(prompt, self.device, 1, self.branches == 2, negative_prompt, clip_skip=clip_skip)
-        self.text = text if self.branches == 1 else torch.cat([negative, text])
+        self.text = (text if self.branches == 1 else torch.cat([negative, text])).to(pipe.unet.dtype)
 
     @contextlib.contextmanager
     def processors(self):
@@ -91,6 +91,9 @@ class Run:
                  if name.startswith("up_blocks.") and name.endswith(".attn1")}
         if not sites:
             raise ValueError("render: the UNet's decoder has no self-attention, expected modules called attn1")
+        for name, module in sites.items():
+            if any(getattr(module, part, None) is not None for part in ("group_norm", "spatial_norm", "norm_q", "norm_k")):
+                raise ValueError(f"render: {name} normalises features, expected self-attention of a transformer block")
         before = {name: module.processor for name, module in sites.items()}
         try:
             for name, module in sites.items():
@@ -113,8 +116,6 @@ class Run:
             on_host = x0.cpu().contiguous()
             normalize_latents(on_host.numpy(), self.background, self.normalization)
             x0 = on_host.to(x0.device)
-        if self.observer is not None:
-            self.observer(step)
         return x0
 
     def estimate(self, z, sigma, frames, is_recording):
@@ -156,15 +157,18 @@ def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, s
     `normalization` is mean, mean_and_deviation or None. Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
+    for name, value, least in (("keyframes", keyframes, 0), ("frames_per_call", frames_per_call, 1)):
+        if value < least:
+            raise ValueError(f"render: {name} is {value}, expected at least {least}")
     run = Run(pipe, maps, prompt, negative_prompt, clip_skip, height, width, keyframe_count=keyframes, seed=seed,
               guidance_scale=guidance_scale, conditioning_scale=conditioning_scale, alpha=alpha, average=average,
               pre_attention=pre_attention, post_attention=post_attention, normalization=normalization,
-              frames_per_call=frames_per_call, observer=observer)
+              frames_per_call=frames_per_call)
     sigmas = karras_schedule(steps, run.schedule.sigma_min, run.schedule.sigma_max)
     channels = pipe.unet.config.in_channels
     z = sigmas[0] * torch.from_numpy(maps.initial_noise(channels, *run.grid, seed=seed, kind=noise)).to(run.device)
     with run.processors():
-        return sample(sampler, run.D, z, sigmas)
+        return sample(sampler, run.D, z, sigmas, observer)
 
 
 @torch.no_grad()

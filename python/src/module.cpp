@@ -184,7 +184,7 @@ auto matches(token_correspondence const& of, std::uint32_t from, std::uint32_t t
 
 auto rows(token_correspondence const& of, std::vector<std::uint32_t> const& keyframes,
           std::vector<std::uint32_t> const& frames, float alpha, float first_fill_share, std::string const& average,
-          std::size_t least_width) {
+          std::optional<std::size_t> width) {
     auto const kind = named("padded_rows", "average", average,
                             {std::pair("quality", texel_average::by_quality), {"plain", texel_average::plain}});
     auto const KF = frames_of(keyframes);
@@ -201,7 +201,7 @@ auto rows(token_correspondence const& of, std::vector<std::uint32_t> const& keyf
         for (auto const& plan : plans) {
             all.push_back(plan.rows());
         }
-        padded = pad_rows<float>(all, alpha, least_width);
+        padded = make_padded_rows<float>(all, alpha, width);
     }
     auto const tokens = grid_of(of).size();
     return std::tuple(array_of<3>(std::move(padded.index), {frames.size(), tokens, padded.width}),
@@ -329,7 +329,7 @@ NB_MODULE(_genrender, m) {
         .def("matches", &matches, "source"_a, "target"_a,
              "For each token of frame `source`, the token of `target` that shows the same point, and whether one does.")
         .def("padded_rows", &rows, "keyframes"_a, "frames"_a, "alpha"_a = 0.7F, "first_fill_share"_a = 0.5F,
-             "average"_a = "quality", "least_width"_a = 1,
+             "average"_a = "quality", "width"_a = nb::none(),
              "(index [frames, tokens, W], weights, own [frames, tokens]) of F_out = own F_hat + sum_w weights "
              "F_KF[index], "
              "where F_KF is [keyframes * tokens, channels]: eq. 6 with alpha folded in.");

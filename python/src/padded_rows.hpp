@@ -10,7 +10,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 namespace genrender::python {
@@ -25,20 +28,25 @@ struct padded_rows {
     std::vector<Real> own;     ///< 1 - alpha, or 1 where no keyframe covers the token [frames, tokens]
 };
 
-/// Pads the rows of several frames, all of as many tokens, to the length of the longest and at least `least_width`. Throws
-/// value_error if alpha is not finite or a source has no place in 32 bits.
+/// The rows of several frames, all of as many tokens, `width` entries each; without a width as many as the longest row
+/// has. Throws value_error if a row is longer, alpha is not finite or a source has no place in 32 bits.
 template <class Real>
-padded_rows<Real> pad_rows(std::span<sparse_rows<Real> const> frames, Real alpha, std::size_t least_width) {
-    require_value(is_finite(alpha), "padded_rows", "alpha", alpha, "a finite number");
-    padded_rows<Real> result;
-    result.width = least_width;
+padded_rows<Real> make_padded_rows(std::span<sparse_rows<Real> const> frames, std::type_identity_t<Real> alpha,
+                                   std::optional<std::size_t> width = std::nullopt) {
+    constexpr auto here = "make_padded_rows";
+    require_value(is_finite(alpha), here, "alpha", alpha, "a finite number");
     std::size_t rows = 0;
+    std::size_t longest = 0;
     for (auto const& frame : frames) {
         rows += frame.row_count();
         for (std::size_t row = 0; row < frame.row_count(); ++row) {
-            result.width = std::max<std::size_t>(result.width, frame.offsets[row + 1] - frame.offsets[row]);
+            longest = std::max<std::size_t>(longest, frame.offsets[row + 1] - frame.offsets[row]);
         }
     }
+    padded_rows<Real> result;
+    result.width = width.value_or(longest);
+    require_value(longest <= result.width, here, "width", result.width,
+                  ("at least the " + std::to_string(longest) + " entries of the longest row").c_str());
     result.index.assign(rows * result.width, 0);
     result.weights.assign(rows * result.width, Real(0));
     result.own.assign(rows, Real(1));
@@ -47,8 +55,8 @@ padded_rows<Real> pad_rows(std::span<sparse_rows<Real> const> frames, Real alpha
         for (std::size_t row = 0; row < frame.row_count(); ++row, ++at) {
             auto place = at * result.width;
             for (auto e = frame.offsets[row]; e < frame.offsets[row + 1]; ++e, ++place) {
-                require_value(frame.sources[e] <= std::uint32_t{std::numeric_limits<std::int32_t>::max()},
-                              "padded_rows", "source", frame.sources[e], "a number of 31 bits");
+                require_value(frame.sources[e] <= std::uint32_t{std::numeric_limits<std::int32_t>::max()}, here,
+                              "source", frame.sources[e], "a number of 31 bits");
                 result.index[place] = static_cast<std::int32_t>(frame.sources[e]);
                 result.weights[place] = alpha * frame.weights[e];
             }

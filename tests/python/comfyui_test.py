@@ -129,7 +129,8 @@ class PatchesTest(unittest.TestCase):
         cls.maps = genrender.load_exr(str(FOLDER / "maps"))
 
         def pipeline():
-            return diffusers.StableDiffusionControlNetPipeline.from_pretrained(FOLDER / "epsilon", safety_checker=None)
+            return diffusers.StableDiffusionControlNetPipeline.from_pretrained(
+                FOLDER / "epsilon", dtype=torch.float32, safety_checker=None)
 
         cls.expected = {keyframes: render(pipeline(), cls.maps, PROMPT, height=SIZE, width=SIZE, steps=STEPS, seed=SEED,
                                           guidance_scale=GUIDANCE, keyframes=keyframes) for keyframes in (2, 4)}
@@ -163,8 +164,8 @@ class PatchesTest(unittest.TestCase):
         model = comfyui.patched(StubModel(), self.maps, keyframes=2, seed=SEED)
         model.set_model_attn1_patch(look)
         self.network.sample(model, comfyui.UVNoise(self.maps, SEED))
-        # Keyframes and frames attend to more in the decoder; the encoder is left alone.
-        self.assertEqual(seen, {("input", True), ("output", False)})
+        # Keyframes and frames attend to more in the decoder; what is before it is left alone.
+        self.assertEqual(seen, {("input", True), ("middle", True), ("output", False)})
 
     def test_the_model_that_was_patched_stays_as_it_was(self):
         model = StubModel()

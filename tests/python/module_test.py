@@ -78,9 +78,15 @@ class MapsTest(unittest.TestCase):
         self.assertEqual((own[0, 0], weights[0, 0].sum()), (1, 0))
 
     def test_rows_may_be_as_wide_as_a_graph_needs(self):
-        rows = self.maps.correspondence(TOKENS, TOKENS).padded_rows([1], [0], least_width=5)
+        rows = self.maps.correspondence(TOKENS, TOKENS).padded_rows([1], [0], width=5)
         self.assertEqual(rows[0].shape, (1, TOKENS ** 2, 5))
         self.assertEqual(rows[1][..., 1:].max(), 0)
+
+    def test_a_frame_that_shows_nothing_keeps_its_own_features(self):
+        nothing = genrender.Maps(self.maps.uv, self.maps.object, np.zeros_like(self.maps.coverage))
+        index, weights, own = nothing.correspondence(TOKENS, TOKENS).padded_rows([1], [0, 2])
+        self.assertEqual((index.shape, weights.shape), ((2, TOKENS ** 2, 0), (2, TOKENS ** 2, 0)))
+        self.assertTrue((own == 1).all())
 
     def test_rest_positions_name_points_as_uv_do(self):
         uv, coverage = self.maps.uv, self.maps.coverage
@@ -102,6 +108,7 @@ class MapsTest(unittest.TestCase):
                 (lambda: self.maps.initial_noise(4, 8, 8, frames=[3]), "frames is 3, expected frames of the UV maps"),
                 (lambda: self.maps.correspondence(8, 8).padded_rows([], [0]), "keyframes is empty"),
                 (lambda: self.maps.correspondence(8, 8).padded_rows([0], [0], math.nan), "alpha is nan"),
+                (lambda: self.maps.correspondence(8, 8).padded_rows([0, 1], [0], width=1), "width is 1, expected at least the 2"),
                 (lambda: genrender.draw_keyframes(4, 3, 0), "count is 4, expected 1 to the animation's 3 frames"),
                 (lambda: genrender.sample("ddim", lambda z, sigma, step: z, 1.0, [1, 0]), "sampler is ddim"),
                 (lambda: genrender.scalings("noise", 1.0), "prediction is noise")):
