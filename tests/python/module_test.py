@@ -6,8 +6,9 @@ import math
 import sys
 import unittest
 
-if importlib.util.find_spec("genrender") is None:
-    print("skipped: the Python", sys.executable, "lacks the package genrender")
+missing = [name for name in ("genrender", "numpy") if importlib.util.find_spec(name) is None]
+if missing:
+    print("skipped: the Python", sys.executable, "lacks", ", ".join(missing))
     sys.exit(77)
 
 import genrender
