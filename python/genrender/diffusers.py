@@ -56,9 +56,9 @@ class SelfAttention:
 
 
 def attend(heads, Q, K, V):
-    """Attn(Q, K, V) (eq. 1) of [..., tokens, channels]."""
-    Q, K, V = (x.unflatten(-1, (heads, -1)).transpose(-2, -3) for x in (Q, K, V))
-    return nn.scaled_dot_product_attention(Q, K, V).transpose(-2, -3).flatten(-2)
+    """Attn(Q, K, V) (eq. 1) of [..., tokens, channels]; fused kernels take exactly four axes."""
+    q, k, v = (x.flatten(0, -3).unflatten(-1, (heads, -1)).transpose(1, 2) for x in (Q, K, V))
+    return nn.scaled_dot_product_attention(q, k, v).transpose(1, 2).reshape(Q.shape)
 
 
 class Run:
