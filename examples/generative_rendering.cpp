@@ -2,6 +2,7 @@
 // [GR alg. 1] The program that does it all: an animated scene in, a stylised animation out.
 #include "support/diffusion_model.hpp"
 #include "support/guidance_source.hpp"
+#include "support/npy_file.hpp"
 #include "support/plan_output.hpp"
 #include "support/preflight_output.hpp"
 #include "support/progress_line.hpp"
@@ -19,6 +20,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace genrender;
@@ -67,6 +69,9 @@ void run(render_options const& options, guidance_source const& source, diffusion
         });
     });
 
+    if (options.keeps_latents) {
+        write_npy(options.out / "latents.npy", to_view(std::as_const(result.z)));
+    }
     auto const images = model.pictures(result.z, loop);
     std::vector<rgb8_image> frames;
     for (std::size_t i = 0; i < images.shape()[0]; ++i) {

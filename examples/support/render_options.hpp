@@ -64,8 +64,9 @@ struct render_options {
     std::uint64_t seed = 0;
     render_method method = render_method::generative_rendering;
     bool is_quiet = false;
-    bool is_check = false; ///< tells what the maps are good for and renders nothing
-    bool is_plan = false;  ///< tells what the run will take and renders nothing
+    bool keeps_latents = false; ///< writes what the pictures are decoded from, too
+    bool is_check = false;      ///< tells what the maps are good for and renders nothing
+    bool is_plan = false;       ///< tells what the run will take and renders nothing
     correspondence_options correspondence;
     render_settings<float> settings;
 };
@@ -292,6 +293,8 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
            "vector instructions of the kernels, to have the bits of another machine; the processor's best unless told")
         ->check(one_of(targets))
         ->type_name("TARGET");
+    app.add_flag("--latents", options.keeps_latents,
+                 "write the frames' latents as OUT/latents.npy, too, to decode them elsewhere");
     app.add_flag("--quiet", options.is_quiet, "no progress");
     app.footer(
         "It writes OUT/frames/0000.png ..., OUT/maps/, OUT/animation.webp, OUT/contact_sheet.png and OUT/report.json.\n"
