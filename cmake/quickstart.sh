@@ -153,7 +153,7 @@ slow_checks() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $slow_check_packages
     say "clang-format"
-    find include tests examples benchmarks '(' -name '*.[ch]pp' -o -name '*.inl' ')' -exec \
+    find include tests examples benchmarks python '(' -name '*.[ch]pp' -o -name '*.inl' ')' -exec \
         clang-format-14 --dry-run --Werror '{}' +
     workflow slow_checks test
     say "Fuzzing"

@@ -2,9 +2,9 @@
 // The Python module: everything of the library that is not the loop around the network, on NumPy arrays.
 #include "animation_maps.hpp"
 #include "arrays.hpp"
-#include "padded_rows.hpp"
 
 #include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/padded_rows.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/noise/initial_noise.hpp>

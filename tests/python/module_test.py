@@ -109,7 +109,7 @@ class MapsTest(unittest.TestCase):
                 (lambda: self.maps.initial_noise(4, 8, 8, frames=[3]), "frames is 3, expected frames of the UV maps"),
                 (lambda: self.maps.correspondence(8, 8).padded_rows([], [0]), "keyframes is empty"),
                 (lambda: self.maps.correspondence(8, 8).padded_rows([0], [0], math.nan), "alpha is nan"),
-                (lambda: self.maps.correspondence(8, 8).padded_rows([0, 1], [0], width=1), "width is 1, expected at least the 2"),
+                (lambda: self.maps.correspondence(8, 8).padded_rows([0, 1], [0], width=1), "entries, expected at most the width 1"),
                 (lambda: genrender.draw_keyframes(4, 3, 0), "count is 4, expected 1 to the animation's 3 frames"),
                 (lambda: genrender.sample("ddim", lambda z, sigma, step: z, 1.0, [1, 0]), "sampler is ddim"),
                 (lambda: genrender.scalings("noise", 1.0), "prediction is noise")):
