@@ -3,10 +3,6 @@
 // evaluation.hpp and reference.hpp.
 #pragma once
 
-#if __cplusplus <= 201703L && !(defined(_MSVC_LANG) && _MSVC_LANG > 201703L)
-#error "genrender is C++20: compile with -std=c++20 or later"
-#endif
-
 #include <genrender/version.hpp>
 
 #include <genrender/core/error.hpp>

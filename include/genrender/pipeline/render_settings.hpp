@@ -60,6 +60,11 @@ struct render_settings {
     /// frames to the bit in less time, for memory that memory_plan tells.
     bool reuses_keyframes = true;
     std::size_t frames_per_call = 1; ///< frames that the injected pass gives the denoiser at once
+
+    /// Does not compile, with a sentence (pipeline/render.hpp): settings are of the scalar of the denoiser.
+    template <class Other>
+        requires(!std::is_same_v<Other, Real>)
+    operator render_settings<Other>() const;
 };
 
 /// Whether a step lies in the window [begin, end) of shares of all steps.
