@@ -91,6 +91,9 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     noise/normals.hpp
     noise/normals.inl
     noise/surface_noise.hpp
+    attention/any_attention_call.hpp
+    attention/any_features.hpp
+    attention/any_processor.hpp
     attention/attention_call.hpp
     attention/attention_processor.hpp
     attention/attention_scratch.hpp
@@ -124,6 +127,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/mix_rows.hpp
     blending/mix_rows.inl
     blending/texel_weights.hpp
+    injection/any_denoiser.hpp
     injection/feature_io.hpp
     injection/host_attention_call.hpp
     injection/injection_settings.hpp

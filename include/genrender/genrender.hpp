@@ -60,6 +60,9 @@
 #include <genrender/noise/normals.hpp>
 #include <genrender/noise/surface_noise.hpp>
 
+#include <genrender/attention/any_attention_call.hpp>
+#include <genrender/attention/any_features.hpp>
+#include <genrender/attention/any_processor.hpp>
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/attention/attention_scratch.hpp>
@@ -93,6 +96,7 @@
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
+#include <genrender/injection/any_denoiser.hpp>
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/injection/injection_settings.hpp>

@@ -44,7 +44,7 @@ template <class Processor, class Call>
 consteval void require_attention_processor() {
     require_attention_call<Call>();
     static_assert(
-        requires(Processor & processor, Call& call) {
+        requires(Processor & processor, Call & call) {
             { processor(call) } -> std::convertible_to<typename Call::features_type>;
         },
         "attention_processor: operator()(call) takes the engine's attention_call as an lvalue and returns its "

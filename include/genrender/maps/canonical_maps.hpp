@@ -47,7 +47,7 @@ namespace detail {
 
 // One part of the concept each, so that who checks it names what is missing in a line of his own.
 template <class Maps>
-concept maps_tell_dimensions = std::copy_constructible<Maps> && (Maps::dimensions == 2 || Maps::dimensions == 3);
+concept maps_tell_dimensions = std::copy_constructible<Maps> &&(Maps::dimensions == 2 || Maps::dimensions == 3);
 template <class Maps>
 concept maps_tell_extents = requires(Maps const& maps) {
     { maps.frame_count() } -> std::convertible_to<std::size_t>;

@@ -110,7 +110,8 @@ using scalar_of = typename real_type_of<Phi>::type;
 
 // One part of the concept each, so that who checks it names what is missing in a line of his own.
 template <class Phi>
-concept denoiser_names_types = std::floating_point<typename Phi::real_type> && std::copyable<typename Phi::features_type>;
+concept denoiser_names_types =
+    std::floating_point<typename Phi::real_type> && std::copyable<typename Phi::features_type>;
 template <class Phi>
 concept denoiser_tells_latents = requires(Phi const& phi) {
     { phi.latent_channels() } -> std::convertible_to<std::size_t>;
@@ -128,11 +129,15 @@ concept denoiser_tells_branches = requires(Phi const& phi) {
 /// already.
 template <class Phi, class Element>
 concept denoiser_estimates = !denoiser_names_types<std::remove_const_t<Phi>> ||
-    requires(Phi& phi, strided_view<typename Phi::real_type, 4> x0, strided_view<Element, 4> z,
-             typename Phi::real_type sigma, std::span<frame_index const> frames,
-             attention_processor_archetype& processor) { phi(x0, z, sigma, frames, processor); };
+                             requires(Phi & phi, strided_view<typename Phi::real_type, 4> x0,
+                                      strided_view<Element, 4> z, typename Phi::real_type sigma,
+                                      std::span<frame_index const> frames, attention_processor_archetype& processor) {
+    phi(x0, z, sigma, frames, processor);
+};
 template <class Phi>
-concept denoiser_call_is_right = denoiser_estimates<Phi const, scalar_of<Phi> const>;
+concept denoiser_call_is_right = denoiser_estimates < Phi const,
+        scalar_of<Phi>
+const > ;
 template <class Phi>
 concept denoiser_call_is_const = denoiser_call_is_right<Phi> || !denoiser_estimates<Phi, scalar_of<Phi> const>;
 template <class Phi>
@@ -148,7 +153,8 @@ concept denoiser_keeps_z = denoiser_call_is_right<Phi> || !denoiser_estimates<Ph
 #define GENRENDER_DENOISER_BRANCHES "denoiser: branches() is const and returns the number of guidance branches"
 #define GENRENDER_DENOISER_CONST "denoiser: operator()(x0, z, sigma, frames, processor) is const"
 #define GENRENDER_DENOISER_Z                                                                                           \
-    "denoiser: operator()(x0, z, sigma, frames, processor) takes z as strided_view<real_type const, 4>: it is not changed"
+    "denoiser: operator()(x0, z, sigma, frames, processor) takes z as strided_view<real_type const, 4>: it is not "    \
+    "changed"
 #define GENRENDER_DENOISER_CALL                                                                                        \
     "denoiser: operator()(x0, z, sigma, frames, processor) takes x0 as strided_view<real_type, 4>, z as "              \
     "strided_view<real_type const, 4>, sigma as real_type, frames as std::span<frame_index const>, and is a template " \
