@@ -289,3 +289,8 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/weight_panels.inl
     reference/weight_storage.hpp
     reference/weights.hpp)
+
+genrender_component(c HEADERS
+    c.hpp
+    c/engine.h
+    c/engine_denoiser.hpp)
