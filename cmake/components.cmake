@@ -293,4 +293,5 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
 genrender_component(c HEADERS
     c.hpp
     c/engine.h
+    c/engine_call.hpp
     c/engine_denoiser.hpp)

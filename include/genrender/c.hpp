@@ -3,4 +3,5 @@
 #pragma once
 
 #include <genrender/c/engine.h>
+#include <genrender/c/engine_call.hpp>
 #include <genrender/c/engine_denoiser.hpp>

@@ -33,7 +33,7 @@ public:
     /// Empty, with a place for each guidance branch of each site.
     feature_bank(std::size_t sites, std::size_t branches)
         : sites_(sites), branches_(branches), places_(sites * branches),
-          asked_(std::make_unique<std::atomic<bool>[]>(sites * branches)) {}
+          asked_(new std::atomic<bool>[sites * branches]()) {}
 
     /// Keeps the features of a place, replacing earlier ones. Throws value_error if the place does not exist.
     void put(attention_place place, keyframe_features<Features> features) {
@@ -66,7 +66,7 @@ private:
     std::size_t sites_;
     std::size_t branches_;
     std::vector<std::optional<keyframe_features<Features>>> places_;
-    std::unique_ptr<std::atomic<bool>[]> asked_;
+    std::shared_ptr<std::atomic<bool>[]> asked_; // of copies, too
 };
 
 } // namespace genrender
