@@ -6,13 +6,17 @@
 
 using namespace genrender;
 
-/// Knows pictures of soft colours, and mixes those of surface points that look alike.
+/// Knows pictures of soft colours, and mixes those of surface points that look alike; engine_in_c/blur_engine.c in C++.
 struct my_denoiser : testing::analytic_denoiser<float> {
     my_denoiser() {
-        grid = {32, 32};
+        grid = {16, 16};
         attention = 0.5F;
-        site_list = {{"attn1", network_kind::denoising, network_part::decoder, grid, channels}};
+        guidance_branches = 2;
+        site_list = {{"decoder.attn1", network_kind::denoising, network_part::decoder, grid, channels}};
     }
 };
 
-int main(int argc, char** argv) { return examples::run_program(argc, argv, my_denoiser{}); }
+// One whose noise levels are Stable Diffusion's needs no more than run_program(argc, argv, my_denoiser{}).
+int main(int argc, char** argv) {
+    return examples::run_program(argc, argv, {.phi = my_denoiser{}, .sigma_min = 0.02F, .sigma_max = 10});
+}

@@ -47,10 +47,10 @@ public:
     }
 
     /// Notes that a static graph has asked what to put out at a place. Throws value_error if the place does not exist.
-    void note_question(attention_place place) { asked_[position(place)] = true; }
+    void note_question(attention_place place) { asked_.get()[position(place)] = true; }
 
     /// Whether a static graph has asked what to put out at a place, and so owes its features.
-    bool was_asked(attention_place place) const { return asked_[position(place)]; }
+    bool was_asked(attention_place place) const { return asked_.get()[position(place)]; }
 
 private:
     std::size_t position(attention_place place) const {
