@@ -8,6 +8,7 @@
 #include <genrender/c/engine.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -52,6 +53,15 @@ inline std::vector<genrender_rows> rows_of(std::span<sparse_rows<float> const> r
     return plain;
 }
 
+/// Numbers of frames as the library counts them.
+inline std::vector<frame_index> frames_of(std::uint32_t const* numbers, std::size_t count) {
+    std::vector<frame_index> frames;
+    for (std::size_t i = 0; i < count; ++i) {
+        frames.push_back({numbers[i]});
+    }
+    return frames;
+}
+
 /// One run of a module of an engine of C: a model of attention_call. All operations throw engine_error if the engine
 /// fails.
 class engine_call {
@@ -61,7 +71,7 @@ public:
 
     /// Refers to both.
     engine_call(genrender_engine const& engine, genrender_call const& call)
-        : engine_(&engine), call_(&call), frames_(call.frames, call.frames + call.frame_count) {}
+        : engine_(&engine), call_(&call), frames_(frames_of(call.frames, call.frame_count)) {}
 
     /// Which site, which guidance branch.
     attention_place place() const { return {{call_->place.site}, call_->place.branch}; }

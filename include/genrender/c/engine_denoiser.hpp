@@ -102,7 +102,7 @@ private:
                       std::size_t frame_count, genrender_inputs* to) {
         auto& pass = self(table);
         return pass.succeeds([&] {
-            std::vector<frame_index> const stack(frames, frames + frame_count);
+            auto const stack = frames_of(frames, frame_count);
             auto in = pass.inputs_of({{place.site}, place.branch}, stack);
             std::vector<std::int32_t> left_out;
             for (auto const& one : in.left_out) {
