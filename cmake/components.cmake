@@ -92,6 +92,9 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     noise/normals.hpp
     noise/normals.inl
     noise/surface_noise.hpp
+    attention/any_attention_call.hpp
+    attention/any_features.hpp
+    attention/any_processor.hpp
     attention/attention_call.hpp
     attention/attention_processor.hpp
     attention/attention_scratch.hpp
@@ -132,6 +135,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/padded_rows.hpp
     blending/row_bound.hpp
     blending/texel_weights.hpp
+    injection/any_denoiser.hpp
     injection/feature_io.hpp
     injection/host_attention_call.hpp
     injection/injection_settings.hpp
@@ -300,3 +304,9 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/weight_panels.inl
     reference/weight_storage.hpp
     reference/weights.hpp)
+
+genrender_component(c HEADERS
+    c.hpp
+    c/engine.h
+    c/engine_call.hpp
+    c/engine_denoiser.hpp)

@@ -1,211 +1,51 @@
 // SPDX-License-Identifier: MIT
-// [GR alg. 1] The program that does it all: an animated scene in, a stylised animation out.
+// The program that does it all, with Stable Diffusion, the reference denoiser, or an engine that is loaded: an animated scene
+// in, a stylised animation out.
 #include "support/diffusion_model.hpp"
-#include "support/guidance_source.hpp"
-#include "support/npy_file.hpp"
-#include "support/plan_output.hpp"
-#include "support/preflight_output.hpp"
-#include "support/progress_line.hpp"
-#include "support/render_options.hpp"
-#include "support/render_output.hpp"
-#include "support/resident_memory.hpp"
-#include "support/run_report.hpp"
+#include "support/engine_library.hpp"
+#include "support/program.hpp"
 
-#include <genrender/baselines/pix2video.hpp>
-#include <genrender/baselines/tokenflow.hpp>
-#include <genrender/pipeline/render.hpp>
-
-#include <algorithm>
-#include <exception>
-#include <iostream>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 using namespace genrender;
-
-using namespace genrender::reference;
 using namespace genrender::examples;
 
 namespace {
 
-/// What `use` makes of the method that the options name.
-template <class Use>
-auto with_method(render_method method, Use const& use) {
-    switch (method) {
-    case render_method::pix2video:
-        return use(pix2video{});
-    case render_method::tokenflow:
-        return use(tokenflow{});
-    default:
-        return use(generative_rendering{});
+/// The networks that come with the library.
+class reference_model final : public picture_model {
+public:
+    explicit reference_model(render_options const& options) : model_(options) {}
+    std::vector<std::string> notes() const override { return model_.notes(); }
+    std::size_t scale() const override { return model_.scale(); }
+    grid_extents usual_size() const override { return {model_.usual_size(), model_.usual_size()}; }
+    std::size_t grid_divisor() const override { return model_.config().grid_divisor(); }
+    float sigma_min() const override { return static_cast<float>(model_.schedule().sigma_min()); }
+    float sigma_max() const override { return static_cast<float>(model_.schedule().sigma_max()); }
+    any_denoiser<float> network(rendered_guidance const& guidance, grid_extents image, any_loop const& loop) override {
+        return model_.network(guidance, image, loop);
     }
-}
-
-/// What `use` makes of the maps that name surface points as the options say.
-template <class Use>
-auto with_canonical_maps(render_options const& options, guidance_source const& source, Use const& use) {
-    return options.correspondence.coordinates() == canonical_coordinates::position
-               ? use(to_position_view(source.guidance))
-               : use(to_uv_view(source.guidance.uv));
-}
-
-void run(render_options const& options, guidance_source const& source, diffusion_model& model,
-         std::optional<earlier_run> const& earlier, threaded_loop const& loop, stopwatch const& total) {
-    // The denoiser is told the prompt and the depth of the whole animation.
-    auto const phi = model.network(source.guidance, source.image, loop);
-
-    render_result<float> result;
-    auto const grown = resident_growth([&] {
-        result = with_canonical_maps(options, source, [&](auto const& maps) {
-            return with_method(options.method, [&](auto const& method) {
-                return render<std::remove_cvref_t<decltype(method)>>(phi, maps,
-                                                                     {.settings = options.settings,
-                                                                      .method = method,
-                                                                      .observer = progress_line(options.is_quiet),
-                                                                      .loop = loop});
-            });
-        });
-    });
-
-    if (options.keeps_latents) {
-        write_npy(options.out / "latents.npy", to_view(std::as_const(result.z)));
+    tensor<float, 4> pictures(latents<float> const& z, any_loop const& loop) const override {
+        return model_.pictures(z, loop);
     }
-    auto const images = model.pictures(result.z, loop);
-    std::vector<rgb8_image> frames;
-    for (std::size_t i = 0; i < images.shape()[0]; ++i) {
-        frames.push_back(rgb_picture(to_view(images)[i]));
+
+private:
+    diffusion_model model_;
+};
+
+std::unique_ptr<picture_model> model_of(render_options const& options) {
+    if (options.engine.empty()) {
+        return std::make_unique<reference_model>(options);
     }
-    write_pictures(options.out, source.guidance, frames);
-    auto json = report_of(options, source, result.report, images);
-    json["render_resident_bytes"] = grown ? nlohmann::ordered_json(*grown) : nlohmann::ordered_json(nullptr);
-    json["seconds"] = seconds_of(result.report, total.seconds());
-    write_text(options.out / "report.json", json.dump(2) + "\n");
-    if (earlier) {
-        write_comparison(options.out, *earlier, frames, method_name(name_in(method_names, options.method)));
-    }
-}
-
-/// Tells what a run will take. The exit code.
-int plan(render_options const& options, guidance_source const& source, diffusion_model& model,
-         threaded_loop const& loop) {
-    std::optional<reference_network<float>> phi;
-    auto const weights = resident_growth([&] { phi.emplace(model.network(source.guidance, source.image, loop)); });
-    auto timed = with_canonical_maps(
-        options, source, [&](auto const& maps) { return plan_run(*phi, maps, options.settings, loop.threads()); });
-    timed.weights_bytes = weights;
-    write_plan(options.out, timed);
-    std::cout << plan_text(timed);
-    return 0;
-}
-
-/// The options that help with what a check finds.
-std::string advice(recommendation const& one) {
-    switch (one.kind) {
-    case recommendation_kind::mirrored:
-    case recommendation_kind::overlapping:
-    case recommendation_kind::tiled:
-    case recommendation_kind::degenerate:
-    case recommendation_kind::many_seams:
-        return sentence_of(one) + " (--canonical position)";
-    case recommendation_kind::texture_too_fine:
-    case recommendation_kind::texture_too_coarse:
-        return sentence_of(one) + " (--correspondence footprint)";
-    case recommendation_kind::low_coverage:
-        return sentence_of(one) + " (--keyframes)";
-    default:
-        return sentence_of(one);
-    }
-}
-
-/// Tells what the maps are good for, at the feature resolutions of the network's injected layers. The exit code.
-int check(render_options const& options, guidance_source const& source, diffusion_model& model,
-          threaded_loop const& loop) {
-    auto const phi = model.network(source.guidance, source.image, loop); // asked for its layers only
-    std::vector<grid_extents> grids;
-    for (auto const& site : phi.sites()) {
-        if (options.settings.layers(site, 0) && std::find(grids.begin(), grids.end(), site.grid) == grids.end()) {
-            grids.push_back(site.grid);
-        }
-    }
-    auto const report = with_canonical_maps(options, source, [&](auto const& maps) {
-        return write_preflight(options.out, maps, grids, options.settings, loop, advice);
-    });
-    std::cout << text_of(report, advice) << "picture: " << (options.out / "preflight.png").string() << "\n";
-    return report.allows_run() ? 0 : 1;
-}
-
-/// Throws value_error unless the network can halve its latents as often as it does.
-void require_pixels(grid_extents image, std::size_t factor) {
-    auto const expected = "a multiple of " + std::to_string(factor) + " for this model";
-    require_value(image.height % factor == 0, "--size", "height", image.height, expected.c_str());
-    require_value(image.width % factor == 0, "--width", "width", image.width, expected.c_str());
-}
-
-/// Prints a sentence and gives the exit code.
-int fail(int code, std::exception const& error) {
-    std::cerr << "generative_rendering: " << error.what() << "\n";
-    return code;
+    auto engine = load_engine(options.engine);
+    auto const sigma_min = engine.sigma_min();
+    auto const sigma_max = engine.sigma_max();
+    return std::make_unique<own_model>(own_denoiser{std::move(engine), sigma_min, sigma_max});
 }
 
 } // namespace
 
-int main(int argc, char** argv) {
-    stopwatch const total;
-    render_options options;
-    guidance_source source;
-    std::optional<earlier_run> earlier;
-    std::optional<diffusion_model> model;
-    threaded_loop loop;
-    // Everything that can be wrong with the arguments shows before the first step.
-    try {
-        options = parse_render_options(argc, argv);
-        loop = threaded_loop(options.threads);
-        force_vector_target(options.vectors);
-        model.emplace(options);
-        auto const notes = model->notes();
-        auto const levels = model->schedule();
-        options.settings.sigma_min = static_cast<float>(levels.sigma_min());
-        options.settings.sigma_max = static_cast<float>(levels.sigma_max());
-        options.size = options.size > 0 ? options.size : model->usual_size();
-        make_folder(options.out);
-        source = load_guidance(options, model->scale(), loop);
-        source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
-        auto const frame_count = source.guidance.uv.frame_count();
-        options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
-        options.settings.noise.rays = source.rays;
-        require_pixels(source.image, model->scale() * model->config().grid_divisor());
-        if (options.is_check) {
-            return check(options, source, *model, loop);
-        }
-        require_render_settings(options.settings, frame_count);
-        with_method(options.method, [&](auto const& method) { // which knows whether it draws keyframes
-            return frames_to_denoise(options.settings, frame_count, method);
-        });
-        if (options.is_plan) {
-            return plan(options, source, *model, loop);
-        }
-        if (!options.beside.empty()) {
-            earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
-        }
-    } catch (no_run const& none) {
-        return none.exit_code;
-    } catch (std::invalid_argument const& error) {
-        return fail(2, error);
-    } catch (std::exception const& error) {
-        return fail(1, error);
-    }
-    for (auto const& note : source.notes) {
-        std::cerr << "note: " << note << "\n";
-    }
-    try {
-        run(options, source, *model, earlier, loop, total);
-    } catch (std::exception const& error) {
-        return fail(1, error);
-    }
-    std::cout << "animation:     " << (options.out / "animation.webp").string() << "\n"
-              << "contact sheet: " << (options.out / "contact_sheet.png").string() << "\n"
-              << "report:        " << (options.out / "report.json").string() << "\n";
-    return 0;
-}
+int main(int argc, char** argv) { return run_program(argc, argv, program_kind::of_models, model_of); }

@@ -24,12 +24,32 @@
 
 namespace genrender::examples {
 
+/// What the decoding of one frame's latents into a picture takes, after the run.
+struct decoding_cost {
+    double seconds = 0;                  ///< of one picture
+    std::optional<std::int64_t> bytes{}; ///< that the program grows by, its weights included
+};
+
 /// A plan, and what a call of the denoiser tells of the time.
 struct timed_plan {
     memory_plan plan;
     double seconds_per_frame = 0; ///< of the denoiser alone, one frame a call and one call at a time, on its threads
     std::optional<std::int64_t> weights_bytes{}; ///< of the networks, held as long as the program runs
+    decoding_cost decoding{};                    ///< of what turns latents into pictures
 };
+
+/// Decodes one frame of nothing by `pictures(z)` to see what it takes.
+template <denoiser Phi, class Pictures>
+decoding_cost time_decoding(Phi const& phi, Pictures const& pictures) {
+    auto const grid = grid_extents(phi.latent_grid());
+    auto z = latents<typename Phi::real_type>::from_shape({1, phi.latent_channels(), grid.height, grid.width});
+    z.fill(0);
+    decoding_cost cost;
+    auto const start = std::chrono::steady_clock::now();
+    cost.bytes = resident_growth([&] { pictures(z); });
+    cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return cost;
+}
 
 /// Calls the denoiser with frames of nothing to see what a call takes, and plans the run on these maps.
 template <denoiser Phi, canonical_maps Maps, class Real>
@@ -96,6 +116,8 @@ inline nlohmann::ordered_json plan_json(timed_plan const& timed) {
     json["noise_values"] = work.noise_values;
     json["normalized_bytes"] = work.normalized_bytes;
     json["weights_bytes"] = timed.weights_bytes ? nlohmann::ordered_json(*timed.weights_bytes) : nullptr;
+    json["decoding_bytes"] = timed.decoding.bytes ? nlohmann::ordered_json(*timed.decoding.bytes) : nullptr;
+    json["decoding_seconds_per_picture"] = timed.decoding.seconds;
     json["denoiser_seconds"] = timed.seconds_per_frame * static_cast<double>(work.denoised_frames);
     return json;
 }
@@ -112,6 +134,9 @@ inline std::string plan_text(timed_plan const& timed) {
         memory.insert(memory.begin() + 1,
                       {"networks (held already)", fixed_text(static_cast<double>(*timed.weights_bytes) / 1e6, 2)});
     }
+    if (timed.decoding.bytes) {
+        memory.push_back({"decoding (after the run)", fixed_text(static_cast<double>(*timed.decoding.bytes) / 1e6, 2)});
+    }
     auto const& work = timed.plan.work;
     auto const seconds = timed.seconds_per_frame * static_cast<double>(work.denoised_frames);
     return table_text(memory) +
@@ -123,7 +148,8 @@ inline std::string plan_text(timed_plan const& timed) {
                        {"features mixed, GB", fixed_text(work.mixed_bytes / 1e9, 3)},
                        {"noise, million values", fixed_text(work.noise_values / 1e6, 2)},
                        {"latents normalised, GB", fixed_text(work.normalized_bytes / 1e9, 3)},
-                       {"denoiser, minutes, about", fixed_text(seconds / 60, 2)}});
+                       {"denoiser, minutes, about", fixed_text(seconds / 60, 2)},
+                       {"decoding, seconds a picture, about", fixed_text(timed.decoding.seconds, 2)}});
 }
 
 /// Writes plan.txt and plan.json into `folder`. Throws file_error if a file cannot be written.

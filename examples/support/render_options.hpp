@@ -5,6 +5,7 @@
 #include "../scenes/scenes.hpp"
 #include "correspondence_options.hpp"
 #include "names.hpp"
+#include "program.hpp"
 
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
@@ -50,6 +51,7 @@ struct render_options {
     std::filesystem::path out;
     std::filesystem::path beside;                                             ///< an earlier run to compare with
     std::filesystem::path pipeline = GENRENDER_REFERENCE_DENOISER "/weights"; ///< a folder, a file, or `random`
+    std::filesystem::path engine;                                             ///< a library; empty: the pipeline
     std::filesystem::path controlnet;                                         ///< empty: in the pipeline
     std::filesystem::path tokenizer;                                          ///< empty: in the pipeline
     std::string variant;                                                      ///< of the files of weights
@@ -109,7 +111,8 @@ inline std::pair<std::filesystem::path, double> lora_of(std::string const& text)
 } // namespace detail
 
 /// The options of a command line. Prints help or what is wrong, and throws no_run, if there is nothing to run.
-inline render_options parse_render_options(int argc, char const* const* argv) {
+inline render_options parse_render_options(int argc, char const* const* argv,
+                                           program_kind kind = program_kind::of_models) {
     render_options options;
     auto& settings = options.settings;
     CLI::App app(
@@ -138,17 +141,22 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         ->check(not_empty)
         ->type_name("DIR");
     input->require_option(1);
+    CLI::App unknown; // Options of models, where there are none: nobody parses with it.
+    auto& of_models = kind == program_kind::of_models ? app : unknown;
     auto const* const prompt_option =
-        app.add_option("--prompt", options.prompt.text,
-                       "what it shall look like; the reference denoiser knows the words " +
-                           detail::listed(prompt_words, " ") + "\n(not needed with --check or --plan)");
-    app.add_option("--negative-prompt", options.prompt.negative, "what it shall not look like")->type_name("TEXT");
-    app.add_option("--guidance", options.prompt.guidance_scale,
-                   "scale of classifier-free guidance, 1 for none (7.5; 2 with the reference denoiser)")
+        of_models.add_option("--prompt", options.prompt.text,
+                             "what it shall look like; the reference denoiser knows the words " +
+                                 detail::listed(prompt_words, " ") + "\n(not needed with --check or --plan)");
+    of_models.add_option("--negative-prompt", options.prompt.negative, "what it shall not look like")
+        ->type_name("TEXT");
+    of_models
+        .add_option("--guidance", options.prompt.guidance_scale,
+                    "scale of classifier-free guidance, 1 for none (7.5; 2 with the reference denoiser)")
         ->check(CLI::Range(0.0, 100.0).description(""))
         ->type_name("G");
-    app.add_option("--guidance-rescale", options.prompt.guidance_rescale,
-                   "share of what a large guidance adds to contrast that is taken back, 0 to 1")
+    of_models
+        .add_option("--guidance-rescale", options.prompt.guidance_rescale,
+                    "share of what a large guidance adds to contrast that is taken back, 0 to 1")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1.0).description(""))
         ->type_name("SHARE");
@@ -166,13 +174,14 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
         app.add_option("--frames", frames, "number of frames (24; with --maps: at most this many)")
             ->check(positive)
             ->type_name("N");
-    app.add_option(
-           "--size,--height", options.size,
-           "height of the frames in pixels, a multiple of 8 and of 64 with Stable Diffusion (what the model was\n"
-           "trained for: 64, 512); the width follows the input: the same, with --maps as they have it")
+    of_models
+        .add_option(
+            "--size,--height", options.size,
+            "height of the frames in pixels, a multiple of 8 and of 64 with Stable Diffusion (what the model was\n"
+            "trained for: 64, 512); the width follows the input: the same, with --maps as they have it")
         ->check(positive)
         ->type_name("PX");
-    app.add_option("--width", options.width, "width of the frames in pixels")->check(positive)->type_name("PX");
+    of_models.add_option("--width", options.width, "width of the frames in pixels")->check(positive)->type_name("PX");
     settings.steps = 20;
     app.add_option("--steps", settings.steps, "denoising steps")
         ->capture_default_str()
@@ -238,7 +247,8 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
     app.add_flag("--plan", options.is_plan,
                  "say before you run: memory and work of the run, as a table, plan.txt and plan.json in OUT")
         ->excludes("--check");
-    auto* const of_pipeline = app.add_option_group("Model", "Stable Diffusion 1.x or 2.x with a ControlNet for depth");
+    auto* const of_pipeline =
+        of_models.add_option_group("Model", "Stable Diffusion 1.x or 2.x with a ControlNet for depth");
     of_pipeline
         ->add_option(
             "--pipeline", options.pipeline,
@@ -269,6 +279,14 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
                      "of the weights in a folder, such as fp16 (the whole ones, else fp16)")
         ->check(not_empty)
         ->type_name("NAME");
+    auto* const engine_option =
+        of_pipeline
+            ->add_option(
+                "--engine", options.engine,
+                "an engine of your own instead, a library with the function of genrender/c/engine.h: it knows\n"
+                "its prompt and size, and its latents are pictures in three colours")
+            ->check(not_empty)
+            ->type_name("LIBRARY");
     std::string prediction_type;
     of_pipeline
         ->add_option(
@@ -314,7 +332,13 @@ inline render_options parse_render_options(int argc, char const* const* argv) {
             (options.method == render_method::pix2video || options.method == render_method::tokenflow)) {
             throw CLI::ValidationError("--plan", "is of generative_rendering and per_frame");
         }
-        if (prompt_option->count() == 0 && !options.is_check && !options.is_plan) {
+        if (engine_option->count() > 0 &&
+            (of_pipeline->count_all() > 1 || prompt_option->count() > 0 || !options.prompt.negative.empty() ||
+             options.prompt.guidance_scale || options.size > 0 || options.width)) {
+            throw CLI::ValidationError("--engine", "knows its own model, prompt, guidance and size");
+        }
+        if (kind == program_kind::of_models && engine_option->count() == 0 && prompt_option->count() == 0 &&
+            !options.is_check && !options.is_plan) {
             throw CLI::RequiredError("--prompt");
         }
         for (auto const& lora : loras) {

@@ -89,6 +89,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["negative_prompt"] = options.prompt.negative;
     told["guidance"] = options.prompt.guidance_scale ? nlohmann::ordered_json(*options.prompt.guidance_scale) : nullptr;
     told["pipeline"] = options.pipeline.string();
+    told["engine"] = options.engine.string();
     told["frames"] = images.shape()[0];
     told["size"] = {source.image.height, source.image.width};
     told["map_size"] = {source.guidance.uv.grid().height, source.guidance.uv.grid().width};

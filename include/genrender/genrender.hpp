@@ -3,10 +3,6 @@
 // evaluation.hpp and reference.hpp.
 #pragma once
 
-#if __cplusplus <= 201703L && !(defined(_MSVC_LANG) && _MSVC_LANG > 201703L)
-#error "genrender is C++20: compile with -std=c++20 or later"
-#endif
-
 #include <genrender/version.hpp>
 
 #include <genrender/core/error.hpp>
@@ -65,6 +61,9 @@
 #include <genrender/noise/normals.hpp>
 #include <genrender/noise/surface_noise.hpp>
 
+#include <genrender/attention/any_attention_call.hpp>
+#include <genrender/attention/any_features.hpp>
+#include <genrender/attention/any_processor.hpp>
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/attention/attention_processor.hpp>
 #include <genrender/attention/attention_scratch.hpp>
@@ -105,6 +104,7 @@
 #include <genrender/blending/row_bound.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
+#include <genrender/injection/any_denoiser.hpp>
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/injection/injection_settings.hpp>

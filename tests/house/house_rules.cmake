@@ -70,10 +70,11 @@ endif()
 foreach(header IN LISTS headers)
     file(READ ${ROOT}/include/genrender/${header} text)
 
-    # The first and the last include of a header put macros of hosts aside and bring them back; they are no lines of its own.
+    # The first and the last include of a header put macros of hosts aside and bring them back; they are no lines of its own. A
+    # header *.h is one of C, which has no such macros to fear: all its names begin with genrender.
     set(begin "#pragma once\n\n#include <genrender/core/begin_header.inl>\n\n")
     set(end "\n#include <genrender/core/end_header.inl>\n")
-    if(NOT header MATCHES "\\.inl$" AND NOT text MATCHES "\n${begin}.*${end}$")
+    if(NOT header MATCHES "\\.(inl|h)$" AND NOT text MATCHES "\n${begin}.*${end}$")
         violation("${header}: does not begin with begin_header.inl after #pragma once and end with end_header.inl")
     endif()
     string(REPLACE "${begin}" "#pragma once\n\n" text "${text}")
@@ -230,7 +231,7 @@ foreach(component IN LISTS genrender_components)
     foreach(include IN LISTS includes_of_${component})
         # Headers of the standard library have neither a folder nor an ending; those of the compiler are few.
         set(is_declared FALSE)
-        if(include MATCHES "<genrender/|<[a-z0-9_]+>|<(immintrin|emmintrin|arm_neon|cpuid)\\.h>")
+        if(include MATCHES "<genrender/|<[a-z0-9_]+>|<(immintrin|emmintrin|arm_neon|cpuid|stddef|stdint)\\.h>")
             set(is_declared TRUE)
         endif()
         foreach(package IN LISTS declared)

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdint>
+#include <utility>
 
 using namespace genrender;
 
@@ -44,6 +45,15 @@ TEST_SUITE("keyframes/feature_bank") {
                 CHECK(kept->F_KF == static_cast<int>(10 * site + branch));
             }
         }
+    }
+
+    TEST_CASE("a question is noted of its place alone, and moves with the bank") {
+        feature_bank<int> bank(2, 2);
+        bank.note_question({{1}, 0});
+        auto const moved = std::move(bank);
+        CHECK(moved.was_asked({{1}, 0}));
+        CHECK_FALSE(moved.was_asked({{1}, 1}));
+        CHECK_FALSE(moved.was_asked({{0}, 0}));
     }
 
     TEST_CASE("what is put again replaces all of what was there") {

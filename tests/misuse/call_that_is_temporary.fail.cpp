@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A call that ends before the processor does.
-// expected (g++): cannot bind non-const lvalue reference
-// expected (clang++): expects an lvalue for 1st argument
+// expected: attention_call: a processor takes an lvalue
+#include <genrender/attention/attention_call.hpp>
+
 #include "right_models.hpp"
 
 #include <genrender/attention/plain_attention.hpp>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A denoiser whose call of the processor is not const.
 // expected: denoiser: operator()(x0, z, sigma, frames, processor) is const
+#include <genrender/pipeline/render.hpp>
+
 #include "right_models.hpp"
 
 struct not_const : right_denoiser {
@@ -9,4 +11,4 @@ struct not_const : right_denoiser {
                     std::span<frame_index const> frames, Processor& processor);
 };
 
-int main() { genrender::require_denoiser<not_const>(); }
+void run(not_const const& phi, genrender::uv_maps_view const& UV) { genrender::render(phi, UV, {}); }

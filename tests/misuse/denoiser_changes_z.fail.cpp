@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A denoiser that takes z as latents it may change.
-// expected: z as strided_view<real_type const, 4>
+// expected: takes z as strided_view<real_type const, 4>: it is not changed
+#include <genrender/pipeline/render.hpp>
+
 #include "right_models.hpp"
 
 struct changes_z : right_denoiser {
@@ -9,4 +11,4 @@ struct changes_z : right_denoiser {
                     std::span<frame_index const> frames, Processor& processor) const;
 };
 
-int main() { genrender::require_denoiser<changes_z>(); }
+void run(changes_z const& phi, genrender::uv_maps_view const& UV) { genrender::render(phi, UV, {}); }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A denoiser whose sites are numbers instead of descriptions.
+// A denoiser whose sites are no attention_site.
 // expected: denoiser: sites() is const and returns a random access range of attention_site
+#include <genrender/pipeline/render.hpp>
+
 #include "right_models.hpp"
 
-#include <vector>
-
 struct sites_are_numbers : right_denoiser {
-    std::vector<int> sites() const;
+    std::span<int const> sites() const;
 };
 
-int main() { genrender::require_denoiser<sites_are_numbers>(); }
+void run(sites_are_numbers const& phi, genrender::uv_maps_view const& UV) { genrender::render(phi, UV, {}); }

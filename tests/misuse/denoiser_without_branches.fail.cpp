@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A denoiser without branches().
+// A denoiser that forgets its guidance branches.
 // expected: denoiser: branches() is const and returns the number of guidance branches
+#include <genrender/pipeline/render.hpp>
+
 #include "right_models.hpp"
 
 struct without_branches : right_denoiser {
-    void branches() const; // hides the right one, as if it were missing
+    std::size_t branches() const = delete;
 };
 
-int main() { genrender::require_denoiser<without_branches>(); }
+void run(without_branches const& phi, genrender::uv_maps_view const& UV) { genrender::render(phi, UV, {}); }

@@ -107,6 +107,29 @@ refuses("foreign weights" 1 "diffusion_pytorch_model.safetensors" ${scene} --pro
 refuses("a folder without weights" 1 "unet" ${scene} --prompt dots ${out} --frames 2 --pipeline ${broken}/maps)
 refuses("an output folder that cannot be written" 1 "${broken}/file" ${scene} --prompt dots --out ${broken}/file)
 
+refuses("an engine that is not there" 1 "there is nothing, expected the library of an engine" ${scene} ${out}
+    --engine ${FOLDER}/nowhere.so)
+refuses("an engine that is no library" 1 "is no library that can be loaded" ${scene} ${out} --engine ${broken}/file)
+refuses("a library without an engine" 1 "has no function genrender_engine_of" ${scene} ${out} --engine ${NO_ENGINE})
+refuses("an engine of another version" 2 "engine.version is 2, expected GENRENDER_ENGINE_VERSION, 1" ${scene} ${out}
+    --engine ${ENGINE_OF_TOMORROW})
+refuses("an engine and a prompt" 2 "--engine: knows its own model, prompt" ${scene} --prompt dots ${out} --engine ${ENGINE})
+refuses("an engine and a pipeline" 2 "--engine: knows its own model, prompt" ${scene} ${out} --engine ${ENGINE}
+    --pipeline random)
+refuses("an engine and a size" 2 "--engine: knows its own model, prompt" ${scene} ${out} --engine ${ENGINE} --size 64)
+
+# A program with a denoiser of its own has no options for what that knows, in its help neither.
+set(of_models ${PROGRAM})
+set(PROGRAM ${OWN_PROGRAM})
+foreach(option IN ITEMS --prompt --negative-prompt --guidance --size --width --pipeline --lora --engine)
+    refuses("${option} of a denoiser of one's own" 2 "${option}" ${scene} ${out} ${option} 64)
+endforeach()
+execute_process(COMMAND ${PROGRAM} --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
+if(help MATCHES "--prompt|--pipeline|--size" OR NOT help MATCHES "--keyframes")
+    fails("the help of a denoiser of one's own:\n${help}")
+endif()
+set(PROGRAM ${of_models})
+
 # What was written before a failure stays.
 file(MAKE_DIRECTORY ${broken}/run/report.json)
 refuses("to put a report where a folder is" 1 "report.json" ${scene} --out ${broken}/run

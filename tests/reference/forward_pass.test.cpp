@@ -51,17 +51,17 @@ TEST_SUITE("reference/forward_pass") {
         auto const f = host_features<float>::allocate({2, 3, 8});
         auto source = weights<float>::seeded(1, "unet");
         attention_matrices<float> const module(source, "attn1", 8, 8, 2);
-        any_processor<float>::call_type call({{4}, 1}, small.frames, f, module);
+        reference::any_processor<float>::call_type call({{4}, 1}, small.frames, f, module);
         std::size_t runs = 0;
         auto counted = [&runs](auto& of) mutable {
             ++runs;
             return of.f();
         };
-        any_processor<float> const erased(counted);
+        reference::any_processor<float> const erased(counted);
         CHECK(erased(call).view().data() == f.view().data());
         CHECK(runs == 1);
         CHECK_FALSE(erased.is_plain_at(call.place()));
         plain_attention const plain;
-        CHECK(any_processor<float>(plain).is_plain_at(call.place()));
+        CHECK(reference::any_processor<float>(plain).is_plain_at(call.place()));
     }
 }

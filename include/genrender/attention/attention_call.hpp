@@ -68,6 +68,10 @@ concept attention_call = std::copyable<typename Call::features_type> && std::flo
     { call.mix(x, x, rows, alpha) } -> std::convertible_to<typename Call::features_type>;
 };
 
+// The sentence of a temporary, which static_assert takes as a literal only.
+#define GENRENDER_CALL_IS_LVALUE                                                                                       \
+    "attention_call: a processor takes an lvalue, my_call call(...); processor(call), since it may keep handles of it"
+
 /// Fails to compile with a sentence for each part that an attention_call lacks.
 template <class Call>
 consteval void require_attention_call() {

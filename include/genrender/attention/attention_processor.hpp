@@ -39,6 +39,18 @@ concept attention_processor = attention_call<Call> && requires(Processor& proces
     { processor(call) } -> std::convertible_to<typename Call::features_type>;
 };
 
+/// Fails to compile with a sentence for what an attention_processor of these calls lacks.
+template <class Processor, class Call>
+consteval void require_attention_processor() {
+    require_attention_call<Call>();
+    static_assert(
+        requires(Processor & processor, Call & call) {
+            { processor(call) } -> std::convertible_to<typename Call::features_type>;
+        },
+        "attention_processor: operator()(call) takes the engine's attention_call as an lvalue and returns its "
+        "features_type");
+}
+
 /// An attention_processor that tells where it does what plain_attention does, an optional capability: what a network
 /// computes before its first other place then depends on z, sigma and the frame alone, and can be reused
 /// (residual_lender).

@@ -134,10 +134,28 @@ public:
     /// Adds the list of one more frame: the pattern is forgotten.
     void push_back(block_list list) { written().push_back(std::move(list)); }
 
+    /// The same of other features: `of(x)` gives a pointer to what stands for `*x`. The pattern is kept.
+    template <class Other, class Of>
+    attention_sources<Other> of_features(Of const& of) const {
+        auto const other = [&](Features const* x) { return x != nullptr ? of(*x) : nullptr; };
+        attention_sources<Other> sources(lists_.size());
+        for (std::size_t i = 0; i < lists_.size(); ++i) {
+            for (auto const& block : lists_[i]) {
+                sources.lists_[i].push_back({other(block.K), other(block.V), block.frame});
+            }
+        }
+        auto const& [meaning, K, V, K_KF, V_KF, joined, left_out] = pattern_;
+        sources.pattern_ = {meaning, other(K), other(V), other(K_KF), other(V_KF), joined, left_out};
+        return sources;
+    }
+
     /// All lists, for engines that read nothing else.
     operator std::vector<block_list> const&() const { return lists_; }
 
 private:
+    template <class Other>
+    friend class attention_sources;
+
     std::vector<block_list>& written() {
         pattern_ = {};
         return lists_;

@@ -8,6 +8,7 @@
 #include <genrender/attention/projected_features.hpp>
 
 #include <cstddef>
+#include <type_traits>
 
 namespace genrender {
 
@@ -30,6 +31,12 @@ struct plain_attention {
     template <class Call>
         requires(!attention_call<Call>)
     auto operator()(Call&) const { require_attention_call<Call>(); }
+
+    /// Says that a call is no temporary.
+    template <class Call>
+    auto operator()(Call const&&) const {
+        static_assert(std::is_void_v<Call>, GENRENDER_CALL_IS_LVALUE);
+    }
 
     /// Everywhere.
     bool is_plain_at(attention_place) const { return true; }

@@ -5,9 +5,6 @@
 
 #include <genrender/core/begin_header.inl>
 
-#if __cplusplus <= 201703L && !(defined(_MSVC_LANG) && _MSVC_LANG > 201703L)
-#error "genrender is C++20: compile with -std=c++20 or later"
-#endif
 #if !defined(__cpp_exceptions) && !defined(_CPPUNWIND)
 #error "genrender tells errors by exceptions: compile without -fno-exceptions"
 #endif

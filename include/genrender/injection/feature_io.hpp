@@ -47,6 +47,7 @@ feature_inputs<Features, Real> inputs_at(recorder<Features> const& pass, attenti
     feature_inputs<Features, Real> inputs;
     inputs.attends_to_stack = pass.attends_to_stack(place);
     inputs.is_recorded = pass.records(place);
+    pass.note_question(place);
     return inputs;
 }
 

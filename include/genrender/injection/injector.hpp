@@ -16,6 +16,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -66,6 +67,12 @@ public:
     template <class Call>
         requires(!attention_call<Call>)
     auto operator()(Call&) const { require_attention_call<Call>(); }
+
+    /// Says that a call is no temporary.
+    template <class Call>
+    auto operator()(Call const&&) const {
+        static_assert(std::is_void_v<Call>, GENRENDER_CALL_IS_LVALUE);
+    }
 
     /// Where the bank holds nothing.
     bool is_plain_at(attention_place place) const { return bank_->find(place) == nullptr; }

@@ -7,7 +7,9 @@
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/error.hpp>
 
+#include <atomic>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,7 +35,8 @@ class feature_bank {
 public:
     /// Empty, with a place for each guidance branch of each site.
     feature_bank(std::size_t sites, std::size_t branches)
-        : sites_(sites), branches_(branches), places_(sites * branches) {}
+        : sites_(sites), branches_(branches), places_(sites * branches),
+          asked_(new std::atomic<bool>[sites * branches]()) {}
 
     /// Keeps the features of a place, replacing earlier ones. Throws value_error if the place does not exist.
     void put(attention_place place, keyframe_features<Features> features) {
@@ -45,6 +48,12 @@ public:
         auto const& entry = places_[position(place)];
         return entry ? &*entry : nullptr;
     }
+
+    /// Notes that a static graph has asked what to put out at a place. Throws value_error if the place does not exist.
+    void note_question(attention_place place) { asked_.get()[position(place)] = true; }
+
+    /// Whether a static graph has asked what to put out at a place, and so owes its features.
+    bool was_asked(attention_place place) const { return asked_.get()[position(place)]; }
 
 private:
     std::size_t position(attention_place place) const {
@@ -60,6 +69,7 @@ private:
     std::size_t sites_;
     std::size_t branches_;
     std::vector<std::optional<keyframe_features<Features>>> places_;
+    std::shared_ptr<std::atomic<bool>[]> asked_; // of copies, too
 };
 
 } // namespace genrender

@@ -10,6 +10,7 @@
 #include <genrender/keyframes/feature_bank.hpp>
 
 #include <functional>
+#include <type_traits>
 #include <utility>
 
 namespace genrender {
@@ -58,6 +59,12 @@ public:
         requires(!attention_call<Call>)
     auto operator()(Call&) const { require_attention_call<Call>(); }
 
+    /// Says that a call is no temporary.
+    template <class Call>
+    auto operator()(Call const&&) const {
+        static_assert(std::is_void_v<Call>, GENRENDER_CALL_IS_LVALUE);
+    }
+
     /// Whether features of a place are kept. Throws value_error if they are and `record` could not store them.
     bool records(attention_place place) const {
         auto const takes_part = takes_part_(place);
@@ -72,6 +79,13 @@ public:
 
     /// Whether frames of the stack attend to each other at a place; asked by engines whose graph is static.
     bool attends_to_stack(attention_place place) const { return extended_ && takes_part_(place); }
+
+    /// Notes that a static graph has asked what to do at a place that takes part: it owes `record` its features.
+    void note_question(attention_place place) const {
+        if (takes_part_(place)) {
+            bank_->note_question(place);
+        }
+    }
 
     /// Keeps features that a static graph gave out: its input f_KF and output F_KF at a place that takes part. Throws
     /// value_error if they cannot be stored in the format asked for.

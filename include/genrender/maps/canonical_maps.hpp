@@ -43,12 +43,48 @@ concept canonical_maps = std::copy_constructible<Maps> &&(Maps::dimensions == 2 
     { maps.point_at(i, p) } -> std::same_as<std::array<float, Maps::dimensions>>;
 };
 
-/// Fails to compile with a sentence for what canonical maps lack.
+namespace detail {
+
+// One part of the concept each, so that who checks it names what is missing in a line of his own.
+template <class Maps>
+concept maps_tell_dimensions = std::copy_constructible<Maps> &&(Maps::dimensions == 2 || Maps::dimensions == 3);
+template <class Maps>
+concept maps_tell_extents = requires(Maps const& maps) {
+    { maps.frame_count() } -> std::convertible_to<std::size_t>;
+    { maps.grid() } -> std::convertible_to<grid_extents>;
+};
+template <class Maps>
+concept maps_tell_coverage = requires(Maps const& maps, frame_index i, pixel p) {
+    { maps.is_covered(i, p) } -> std::same_as<bool>;
+};
+template <class Maps>
+concept maps_tell_objects = requires(Maps const& maps, frame_index i, pixel p) {
+    { maps.object_at(i, p) } -> std::same_as<object_index>;
+};
+template <class Maps>
+concept maps_tell_points = !maps_tell_dimensions<Maps> || requires(Maps const& maps, frame_index i, pixel p) {
+    { maps.point_at(i, p) } -> std::same_as<std::array<float, Maps::dimensions>>;
+};
+
+} // namespace detail
+
+// The sentences, which static_assert takes as literals only.
+#define GENRENDER_MAPS_DIMENSIONS "canonical_maps: maps can be copied and have `dimensions`, a constant of 2 or 3"
+#define GENRENDER_MAPS_EXTENTS                                                                                         \
+    "canonical_maps: frame_count() is const and returns a number, grid() is const and returns grid_extents"
+#define GENRENDER_MAPS_COVERAGE "canonical_maps: is_covered(frame, pixel) is const and returns bool"
+#define GENRENDER_MAPS_OBJECTS "canonical_maps: object_at(frame, pixel) is const and returns object_index"
+#define GENRENDER_MAPS_POINTS                                                                                          \
+    "canonical_maps: point_at(frame, pixel) is const and returns std::array<float, dimensions>"
+
+/// Fails to compile with a sentence for each part that canonical maps lack.
 template <class Maps>
 consteval void require_canonical_maps() {
-    static_assert(canonical_maps<Maps>, "canonical_maps: maps can be copied and have dimensions of 2 or 3, "
-                                        "frame_count(), grid(), is_covered(frame, pixel), "
-                                        "object_at(frame, pixel) and point_at(frame, pixel), all const");
+    static_assert(detail::maps_tell_dimensions<Maps>, GENRENDER_MAPS_DIMENSIONS);
+    static_assert(detail::maps_tell_extents<Maps>, GENRENDER_MAPS_EXTENTS);
+    static_assert(detail::maps_tell_coverage<Maps>, GENRENDER_MAPS_COVERAGE);
+    static_assert(detail::maps_tell_objects<Maps>, GENRENDER_MAPS_OBJECTS);
+    static_assert(detail::maps_tell_points<Maps>, GENRENDER_MAPS_POINTS);
 }
 
 /// Maps of an animation in their owner's memory, of D coordinates: full resolution, no antialiasing, floating point. A

@@ -114,22 +114,20 @@ struct render_result {
     bool is_cancelled = false; ///< whether the observer ended the run
 };
 
+/// Says that settings of one scalar do not fit a denoiser of another; never run.
+template <class Real>
+template <class Other>
+    requires(!std::is_same_v<Other, Real>)
+render_settings<Real>::operator render_settings<Other>() const {
+    static_assert(std::is_same_v<Other, Real>, "render: settings are render_settings<real_type of the denoiser>");
+    return {};
+}
+
 namespace detail {
 
 /// `Map`, or for void the map that settings choose for maps of D canonical coordinates.
 template <class Map, std::size_t D>
 using map_or_chosen = std::conditional_t<std::is_void_v<Map>, chosen_correspondence<D>, Map>;
-
-/// The scalar of a denoiser; float for what is none.
-template <class Phi>
-struct real_type_of {
-    using type = float;
-};
-template <class Phi>
-    requires std::floating_point<typename Phi::real_type>
-struct real_type_of<Phi> {
-    using type = typename Phi::real_type;
-};
 
 /// The canonical coordinates of maps; 2 for what are none.
 template <class Maps>
@@ -190,8 +188,21 @@ render_result<typename detail::real_type_of<Phi>::type>
 render(Phi const& phi, Maps const& UV,
        render_arguments<typename detail::real_type_of<Phi>::type, Method,
                         detail::map_or_chosen<Map, detail::dimensions_of<Maps>>> const& arguments) {
-    require_denoiser<Phi>();
-    require_canonical_maps<Maps>();
+    // As require_denoiser and require_canonical_maps, and here so that a compiler comes to the sentence at once.
+    static_assert(detail::denoiser_names_types<Phi>, GENRENDER_DENOISER_TYPES);
+    static_assert(detail::denoiser_tells_latents<Phi>, GENRENDER_DENOISER_LATENTS);
+    static_assert(detail::denoiser_tells_sites<Phi>, GENRENDER_DENOISER_SITES);
+    static_assert(detail::denoiser_tells_branches<Phi>, GENRENDER_DENOISER_BRANCHES);
+    static_assert(detail::denoiser_call_is_const<Phi>, GENRENDER_DENOISER_CONST);
+    static_assert(detail::denoiser_keeps_z<Phi>, GENRENDER_DENOISER_Z);
+    static_assert(detail::denoiser_call_is_right<Phi> || !detail::denoiser_call_is_const<Phi> ||
+                      !detail::denoiser_keeps_z<Phi>,
+                  GENRENDER_DENOISER_CALL);
+    static_assert(detail::maps_tell_dimensions<Maps>, GENRENDER_MAPS_DIMENSIONS);
+    static_assert(detail::maps_tell_extents<Maps>, GENRENDER_MAPS_EXTENTS);
+    static_assert(detail::maps_tell_coverage<Maps>, GENRENDER_MAPS_COVERAGE);
+    static_assert(detail::maps_tell_objects<Maps>, GENRENDER_MAPS_OBJECTS);
+    static_assert(detail::maps_tell_points<Maps>, GENRENDER_MAPS_POINTS);
     if constexpr (denoiser<Phi> && canonical_maps<Maps>) {
         using Real = typename Phi::real_type;
         using map_type = detail::map_or_chosen<Map, Maps::dimensions>;

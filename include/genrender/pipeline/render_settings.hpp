@@ -67,6 +67,11 @@ struct render_settings {
     /// How many calls of the denoiser may run at the same time; the run's loop then shares the library's own work alone
     /// among more threads. 0 leaves it to the loop; 1 is for an engine with one graph, context or device.
     std::size_t calls_at_once = 0;
+
+    /// Does not compile, with a sentence (pipeline/render.hpp): settings are of the scalar of the denoiser.
+    template <class Other>
+        requires(!std::is_same_v<Other, Real>)
+    operator render_settings<Other>() const;
 };
 
 /// Frames that a call of a pass over `frames` frames gives the denoiser, but for a shorter last one.

@@ -109,7 +109,11 @@ public:
                 if (takes_part({{site}, branch}) && bank.find({{site}, branch}) == nullptr) {
                     throw value_error(std::string("sequence_denoiser: features of ") + whose + " at site " +
                                       sites[site].name + " of branch " + std::to_string(branch) +
-                                      " are missing, expected the denoiser to run its processor there");
+                                      " are missing, expected the denoiser to " +
+                                      (bank.was_asked({{site}, branch})
+                                           ? "call record_features(processor, place, f, F) after its graph has run, "
+                                             "since inputs_at said is_recorded there"
+                                           : "run its processor there"));
                 }
             }
         }

@@ -4,7 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/attention/attention_processor.hpp>
+#include <genrender/attention/any_processor.hpp>
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/host_features.hpp>
 #include <genrender/core/index.hpp>
@@ -18,43 +18,13 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 namespace genrender::reference {
 
-/// Any attention_processor, so that the layers are compiled once for all of them: a reference to one that outlives the
-/// pass.
+/// Any attention_processor of the network's modules, so that the layers are compiled once for all of them.
 template <class Real>
-class any_processor {
-public:
-    /// What the network's modules hand to a processor.
-    using call_type = host_attention_call<Real, attention_matrices<Real>>;
-
-    /// Refers to any attention processor, which has to outlive this.
-    template <class Processor>
-        requires(!std::is_same_v<std::remove_const_t<Processor>, any_processor>)
-    any_processor(Processor& processor)
-        : processor_(&processor), run_([](void const* object, call_type& call) -> host_features<Real> {
-              return (*const_cast<Processor*>(static_cast<Processor const*>(object)))(call);
-          }),
-          is_plain_at_([](void const* object, attention_place place) {
-              return genrender::is_plain_at(*static_cast<Processor const*>(object), place);
-          }) {
-        static_assert(attention_processor<Processor, call_type>,
-                      "reference_network: the processor does not model attention_processor");
-    }
-
-    /// Runs the processor.
-    host_features<Real> operator()(call_type& call) const { return run_(processor_, call); }
-    /// What genrender::is_plain_at tells of the processor.
-    bool is_plain_at(attention_place place) const { return is_plain_at_(processor_, place); }
-
-private:
-    void const* processor_;
-    host_features<Real> (*run_)(void const*, call_type&);
-    bool (*is_plain_at_)(void const*, attention_place);
-};
+using any_processor = genrender::any_processor<host_attention_call<Real, attention_matrices<Real>>>;
 
 /// One run of one network for one guidance branch. All frames pass a layer before any enters the next, because a
 /// processor may let frames attend to each other [GR eq. 3].

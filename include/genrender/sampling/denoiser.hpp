@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <ranges>
 #include <span>
+#include <type_traits>
 
 namespace genrender {
 
@@ -92,38 +93,85 @@ concept denoiser = std::floating_point<typename Phi::real_type> && std::copyable
     phi(x0, z, sigma, frames, processor);
 };
 
+namespace detail {
+
+/// The scalar of a denoiser; float for what is none.
+template <class Phi>
+struct real_type_of {
+    using type = float;
+};
+template <class Phi>
+    requires std::floating_point<typename Phi::real_type>
+struct real_type_of<Phi> {
+    using type = typename Phi::real_type;
+};
+template <class Phi>
+using scalar_of = typename real_type_of<Phi>::type;
+
+// One part of the concept each, so that who checks it names what is missing in a line of his own.
+template <class Phi>
+concept denoiser_names_types =
+    std::floating_point<typename Phi::real_type> && std::copyable<typename Phi::features_type>;
+template <class Phi>
+concept denoiser_tells_latents = requires(Phi const& phi) {
+    { phi.latent_channels() } -> std::convertible_to<std::size_t>;
+    { phi.latent_grid() } -> std::convertible_to<grid_extents>;
+};
+template <class Phi>
+concept denoiser_tells_sites = requires(Phi const& phi) {
+    { phi.sites() } -> attention_sites;
+};
+template <class Phi>
+concept denoiser_tells_branches = requires(Phi const& phi) {
+    { phi.branches() } -> std::convertible_to<std::size_t>;
+};
+/// Whether a Phi, const or not, can be called with z of these elements; true where it names no scalar, which is told
+/// already.
+template <class Phi, class Element>
+concept denoiser_estimates = !denoiser_names_types<std::remove_const_t<Phi>> ||
+                             requires(Phi & phi, strided_view<typename Phi::real_type, 4> x0,
+                                      strided_view<Element, 4> z, typename Phi::real_type sigma,
+                                      std::span<frame_index const> frames, attention_processor_archetype& processor) {
+    phi(x0, z, sigma, frames, processor);
+};
+template <class Phi>
+concept denoiser_call_is_right = denoiser_estimates < Phi const,
+        scalar_of<Phi>
+const > ;
+template <class Phi>
+concept denoiser_call_is_const = denoiser_call_is_right<Phi> || !denoiser_estimates<Phi, scalar_of<Phi> const>;
+template <class Phi>
+concept denoiser_keeps_z = denoiser_call_is_right<Phi> || !denoiser_estimates<Phi const, scalar_of<Phi>>;
+
+} // namespace detail
+
+// The sentences, which static_assert takes as literals only.
+#define GENRENDER_DENOISER_TYPES "denoiser: real_type is float or double and features_type is copyable"
+#define GENRENDER_DENOISER_LATENTS                                                                                     \
+    "denoiser: latent_channels() is const and returns a number, latent_grid() is const and returns grid_extents"
+#define GENRENDER_DENOISER_SITES "denoiser: sites() is const and returns a random access range of attention_site"
+#define GENRENDER_DENOISER_BRANCHES "denoiser: branches() is const and returns the number of guidance branches"
+#define GENRENDER_DENOISER_CONST "denoiser: operator()(x0, z, sigma, frames, processor) is const"
+#define GENRENDER_DENOISER_Z                                                                                           \
+    "denoiser: operator()(x0, z, sigma, frames, processor) takes z as strided_view<real_type const, 4>: it is not "    \
+    "changed"
+#define GENRENDER_DENOISER_CALL                                                                                        \
+    "denoiser: operator()(x0, z, sigma, frames, processor) takes x0 as strided_view<real_type, 4>, z as "              \
+    "strided_view<real_type const, 4>, sigma as real_type, frames as std::span<frame_index const>, and is a template " \
+    "for every processor, which it takes as Processor&"
+
 /// Fails to compile with a sentence for each part that a denoiser lacks.
 template <class Phi>
 consteval void require_denoiser() {
-    static_assert(
-        requires {
-            requires std::floating_point<typename Phi::real_type>;
-            requires std::copyable<typename Phi::features_type>;
-        },
-        "denoiser: real_type is float or double and features_type is copyable");
-    static_assert(
-        requires(Phi const& phi) {
-            { phi.latent_channels() } -> std::convertible_to<std::size_t>;
-            { phi.latent_grid() } -> std::convertible_to<grid_extents>;
-        },
-        "denoiser: latent_channels() is const and returns a number, latent_grid() is const and returns grid_extents");
-    static_assert(
-        requires(Phi const& phi) {
-            { phi.sites() } -> attention_sites;
-        },
-        "denoiser: sites() is const and returns a random access range of attention_site");
-    static_assert(
-        requires(Phi const& phi) {
-            { phi.branches() } -> std::convertible_to<std::size_t>;
-        },
-        "denoiser: branches() is const and returns the number of guidance branches");
-    static_assert(
-        requires(Phi const& phi, strided_view<typename Phi::real_type, 4> x0,
-                 strided_view<typename Phi::real_type const, 4> z, typename Phi::real_type sigma,
-                 std::span<frame_index const> frames,
-                 attention_processor_archetype& processor) { phi(x0, z, sigma, frames, processor); },
-        "denoiser: operator()(x0, z, sigma, frames, processor) is const, takes x0 as strided_view<real_type, 4>, z as "
-        "strided_view<real_type const, 4>, and is a template for every processor");
+    static_assert(detail::denoiser_names_types<Phi>, GENRENDER_DENOISER_TYPES);
+    static_assert(detail::denoiser_tells_latents<Phi>, GENRENDER_DENOISER_LATENTS);
+    static_assert(detail::denoiser_tells_sites<Phi>, GENRENDER_DENOISER_SITES);
+    static_assert(detail::denoiser_tells_branches<Phi>, GENRENDER_DENOISER_BRANCHES);
+    static_assert(detail::denoiser_call_is_const<Phi>, GENRENDER_DENOISER_CONST);
+    static_assert(detail::denoiser_keeps_z<Phi>, GENRENDER_DENOISER_Z);
+    static_assert(detail::denoiser_call_is_right<Phi> || !detail::denoiser_call_is_const<Phi> ||
+                      !detail::denoiser_keeps_z<Phi>,
+                  GENRENDER_DENOISER_CALL);
 }
 
 /// The least that a denoiser is, for checking what takes one; never run.

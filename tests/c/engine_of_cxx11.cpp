@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+// The example's engine as C++11, under a name of its own.
+#define ENGINE_FUNCTION engine_of_cxx11
+#include "examples/engine_in_c/blur_engine.c"
