@@ -70,7 +70,7 @@ struct static_denoiser {
     }
 };
 
-render_settings<float> few_steps() {
+render_settings<float> three_steps() {
     render_settings<float> settings;
     settings.steps = 3;
     settings.keyframes.count = 2;
@@ -91,14 +91,14 @@ bool renders_the_same(Phi const& phi, render_settings<float> const& settings) {
 TEST_SUITE("injection/any_denoiser") {
     TEST_CASE("it renders the frames of a denoiser that calls back, to the bit") {
         analytic const phi{.grid = {16, 16}, .attention = 0.5f, .guidance_branches = 2};
-        CHECK(renders_the_same(phi, few_steps()));
-        auto in_16_bits = few_steps();
+        CHECK(renders_the_same(phi, three_steps()));
+        auto in_16_bits = three_steps();
         in_16_bits.keyframe_storage = feature_storage::bf16;
         CHECK(renders_the_same(phi, in_16_bits));
     }
     TEST_CASE("it renders the frames of a static graph, to the bit") {
-        CHECK(renders_the_same(static_denoiser{}, few_steps()));
-        auto without = few_steps();
+        CHECK(renders_the_same(static_denoiser{}, three_steps()));
+        auto without = three_steps();
         without.injection.post_attention = false;
         CHECK(renders_the_same(static_denoiser{}, without));
     }
@@ -108,13 +108,11 @@ TEST_SUITE("injection/any_denoiser") {
             void prepare(run_shapes const& shapes) const { *told = shapes; }
         };
         run_shapes told;
-        prepared phi;
-        phi.grid = {16, 16};
-        phi.told = &told;
-        CHECK(renders_the_same(phi, few_steps()));
+        prepared const phi{{.grid = {16, 16}}, &told};
+        CHECK(renders_the_same(phi, three_steps()));
         told = {};
         auto const maps = testing::slanted_maps(4);
-        render(any_denoiser<float>(phi), to_uv_view(maps), {.settings = few_steps()});
+        render(any_denoiser<float>(phi), to_uv_view(maps), {.settings = three_steps()});
         CHECK(told.keyframes == 2);
         CHECK(told.row_width == 2);
     }
@@ -135,7 +133,7 @@ TEST_SUITE("injection/any_denoiser") {
     }
     TEST_CASE("a static graph that does not hand over features is told of record_features") {
         auto const maps = testing::slanted_maps(4);
-        CHECK_THROWS_WITH_AS(render(static_denoiser{.hands_over = false}, to_uv_view(maps), {.settings = few_steps()}),
+        CHECK_THROWS_WITH_AS(render(static_denoiser{.hands_over = false}, to_uv_view(maps), {.settings = three_steps()}),
                              "sequence_denoiser: features of keyframes at site decoder.attn1 of branch 0 are missing, "
                              "expected the denoiser to call record_features(processor, place, f, F) after its graph "
                              "has run, since inputs_at said is_recorded there",
