@@ -4,6 +4,7 @@
 
 #include "../support/plain_algorithm.hpp"
 #include "../support/random_scene.hpp"
+#include "../support/stacked_branches.hpp"
 
 #include <genrender/correspondence/texel_grid.hpp>
 #include <genrender/maps/background_mask.hpp>
@@ -167,5 +168,21 @@ TEST_SUITE("pipeline/sequence_denoiser") {
             run.estimate(z, 3),
             "sequence_denoiser: the denoiser's estimate of frame 4 in step 1 is nan, expected finite latents",
             value_error);
+    }
+
+    TEST_CASE("branches that run as one stack give what branches apart give") {
+        small_run<float> run;
+        testing::stacked_denoiser stacked;
+        static_cast<testing::analytic_denoiser<float>&>(stacked) = run.phi;
+        auto const z = run.noise();
+        auto const apart = run.estimate(z, 3);
+        auto const together = [&] {
+            return sequence_denoiser(stacked, run.grids, to_view(std::as_const(run.background)),
+                                     std::span<float const>(run.sigmas), run.settings, run.loop, run.meter,
+                                     run.writer)(z, 3);
+        };
+        CHECK(greatest_difference(together(), apart.data()) == 0);
+        stacked.mixes_up = true;
+        CHECK(greatest_difference(together(), apart.data()) > 0.01);
     }
 }

@@ -45,7 +45,8 @@ concept attention_sites = std::ranges::random_access_range<Sites> && std::ranges
 /// `phi.latent_grid()`                    | grid_extents    | height and width of z
 /// `phi.sites()`                          | attention_sites | its self-attention modules, the same in every call
 /// `phi.branches()`                       | size_t          | guidance branches it runs: 1, or 2 with classifier-free
-///                                        |                 | guidance
+///                                        |                 | guidance; 1 too if its features hold both branches and
+///                                        |                 | its calls do the same to each
 /// `phi(x0, z, sigma, frames, processor)` | void            | writes D(z, sigma) [EDM sec. 3], the estimate of the
 ///                                        |                 | clean latents, into x0; x0 and z are [frames, channels,
 ///                                        |                 | height, width]; `frames[i]` says which frame of the
