@@ -9,6 +9,7 @@ import numpy
 import torch
 from diffusers import AutoencoderKL, ControlNetModel, UNet2DConditionModel
 from diffusers.models.attention_processor import AttnProcessor
+from safetensors.torch import load_file
 from transformers import CLIPTextConfig, CLIPTextModel, CLIPTokenizer
 
 from autoencoder import LATENT_CHANNELS
@@ -152,13 +153,24 @@ def save_denoiser(model, out):
         unet=["diffusers", "UNet2DConditionModel"], vae=["diffusers", "AutoencoderKL"]), indent=2) + "\n")
 
 
-def train_denoiser(pictures, held_out, out, steps, seed, precision, compiled, batch=32, rate=1e-3, every=100):
-    """Trains on the latents of `out`/vae and writes the other folders of the pipeline."""
+def load_denoiser(model, folder):
+    """The weights of such folders, of whichever precision."""
+    for name, file in (("text_encoder", "model"), ("unet", "diffusion_pytorch_model"),
+                       ("controlnet", "diffusion_pytorch_model")):
+        getattr(model, name).load_state_dict(load_file(folder / name / f"{file}.safetensors"))
+
+
+def train_denoiser(pictures, held_out, out, steps, seed, precision, compiled, batch=32, rate=1e-3, every=100,
+                   begin=None):
+    """Trains on the latents of `out`/vae, from the weights of the folder `begin` if there is one, and writes the other
+    folders of the pipeline."""
     torch.manual_seed(seed)
     autoencoder = AutoencoderKL.from_pretrained(out / "vae").float().eval()
     tokenizer = CLIPTokenizer.from_pretrained(out / "tokenizer")
     latents = cached_latents(pictures, autoencoder, out / "latents.f16")
     model = Denoiser(tokenizer)
+    if begin is not None:
+        load_denoiser(model, begin)
     print(f"denoiser: {sum(p.numel() for p in model.parameters())} parameters", flush=True)
     run = TrainingRun("denoiser", model, out / "denoiser_checkpoint.pt", steps, rate, seed, precision)
     predict = torch.compile(model, dynamic=False) if compiled else model

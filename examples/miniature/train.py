@@ -9,6 +9,7 @@ A run that was stopped goes on where its last checkpoint was, and ends with the 
 
 import argparse
 import pathlib
+import shutil
 import subprocess
 
 import torch
@@ -37,11 +38,13 @@ def main():
     parser.add_argument("--make-pictures", type=pathlib.Path, help="the program of that name")
     parser.add_argument("--until", choices=STAGES, default=STAGES[-1], help="the last stage to run")
     parser.add_argument("--pictures", type=int, default=32768)
-    parser.add_argument("--vae-steps", type=int, default=5000)
-    parser.add_argument("--steps", type=int, default=20000, help="of the denoiser")
+    parser.add_argument("--vae-steps", type=int, default=4000)
+    parser.add_argument("--steps", type=int, default=9000, help="of the denoiser")
     parser.add_argument("--batch", type=int, default=32, help="of the denoiser")
     parser.add_argument("--rate", type=float, default=1e-3, help="highest learning rate of the denoiser")
     parser.add_argument("--every", type=int, default=100, help="steps between two lines of progress")
+    parser.add_argument("--begin", type=pathlib.Path, help="a pipeline whose denoiser is trained on, and whose autoencoder "
+                        "and tokenizer are used")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--threads", type=int, default=0, help="0 = all of the machine")
     parser.add_argument("--precision", choices=("bfloat16", "float32"), default="bfloat16", help="of products")
@@ -57,13 +60,17 @@ def main():
     pictures = make_pictures(arguments.make_pictures, out / "pictures", arguments.pictures, arguments.seed + 1)
     held_out = make_pictures(arguments.make_pictures, out / "held_out", 1000, arguments.seed + 2, "--held-out",
                              "--full-captions")
+    if arguments.begin is not None:
+        for name in ("vae", "tokenizer"):
+            if not (out / name).exists():
+                shutil.copytree(arguments.begin / name, out / name)
     if last >= 1 and not (out / "vae" / "config.json").exists():
         train_autoencoder(pictures, held_out, out, arguments.vae_steps, arguments.seed, precision, arguments.compile)
     if last >= 2 and not (out / "tokenizer" / "vocab.json").exists():
         write_tokenizer(pictures.captions, out / "tokenizer")
     if last >= 3:
         train_denoiser(pictures, held_out, out, arguments.steps, arguments.seed, precision, arguments.compile,
-                       arguments.batch, arguments.rate, arguments.every)
+                       arguments.batch, arguments.rate, arguments.every, arguments.begin)
 
 
 if __name__ == "__main__":
