@@ -2,7 +2,9 @@
 // Runs the text encoder or the VAE of a folder of full_size_ends.py; prints how far it is from what that wrote, the
 // time and the peak of memory.
 #include <genrender/core/parallel.hpp>
+#include <genrender/reference/autoencoder_config_file.hpp>
 #include <genrender/reference/autoencoder_kl.hpp>
+#include <genrender/reference/clip_text_config_file.hpp>
 #include <genrender/reference/clip_text_encoder.hpp>
 #include <genrender/reference/diffusers_folder.hpp>
 #include <genrender/reference/safetensors.hpp>
