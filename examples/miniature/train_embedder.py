@@ -15,6 +15,7 @@ import itertools
 import json
 import math
 import pathlib
+import re
 import shutil
 import string
 import time
@@ -36,6 +37,11 @@ NORM_EPSILON = 1e-5
 PAIRS = list(itertools.combinations(range(len(COLOURS)), 2))
 SINGLES = [(colour,) for colour in range(len(COLOURS))]
 PAINTS = [(0, c) for c in SINGLES] + [(p, pair) for p in range(1, len(PATTERNS)) for pair in PAIRS]
+
+
+def wide(x):
+    """At least single precision."""
+    return x.float() if x.dtype == torch.bfloat16 else x
 
 
 class Block(nn.Module):
@@ -69,11 +75,11 @@ class ImageEncoder(nn.Module):
             x = block(x)
         rows = x.flatten(2).transpose(1, 2)
         scores = self.gate(rows)
-        share = torch.sigmoid(scores.float())
-        inside = ((share * rows).sum(1) / share.sum(1)).to(x.dtype)
+        share = torch.sigmoid(wide(scores))
+        inside = ((share * rows).sum(1) / share.sum(1).clamp(min=1e-30)).to(x.dtype)
         means = torch.cat([inside, rows.mean(1)], 1)
         vectors = self.projection(F.silu(self.hidden(means)))
-        return vectors.float(), scores[..., 0].float().unflatten(1, x.shape[-2:])
+        return wide(vectors), wide(scores[..., 0]).unflatten(1, x.shape[-2:])
 
 
 class Embedder(nn.Module):
@@ -91,7 +97,7 @@ class Embedder(nn.Module):
         return F.normalize(vectors, dim=-1), scores
 
     def text_vectors(self, tokens):
-        return F.normalize(self.text_projection(self.text(tokens).pooler_output).float(), dim=-1)
+        return F.normalize(wide(self.text_projection(self.text(tokens).pooler_output)), dim=-1)
 
 
 def text_config(tokenizer):
@@ -212,6 +218,8 @@ def accuracy(model, tokenizer, pictures, vectors=None):
         rate = lambda right: round(float(right.mean()), 4)
         result[way] = {name: rate(right) for name, right in found.items()}
         result[way]["colour_pairs"] = rate(found["colours"][~plain])
+        result[way]["mean_over_patterns"] = {name: rate(numpy.array([right[patterns == i].mean() for i in set(patterns)]))
+                                             for name, right in found.items()}
         result[way]["by_pattern"] = {p: {name: rate(right[patterns == i]) for name, right in found.items()}
                                      for i, p in enumerate(PATTERNS) if (patterns == i).any()}
     return result
@@ -228,22 +236,33 @@ def retrieval(model, tokenizer, pictures, vectors):
     return round(float((scores.diagonal() > others).float().mean()), 4)
 
 
-def save_model(model, tokenizer_folder, out):
-    out.mkdir(parents=True, exist_ok=True)
+def config_of(model):
+    """What the library's reference_clip is built from."""
     image, text = model.image, model.text.config
-    (out / "config.json").write_text(json.dumps(dict(
-        _class_name="ReferenceClip", block_out_channels=[b.conv.out_channels for b in image.blocks],
-        strides=[b.conv.stride[0] for b in image.blocks], norm_num_groups=image.blocks[0].norm.num_groups,
+    return dict(
+        _class_name="ReferenceClip", block_out_channels=[block.conv.out_channels for block in image.blocks],
+        strides=[block.conv.stride[0] for block in image.blocks], norm_num_groups=image.blocks[0].norm.num_groups,
         norm_eps=NORM_EPSILON, hidden_size=image.hidden.out_features, projection_dim=image.projection.out_features,
         text_config={name: getattr(text, name) for name in (
             "vocab_size", "hidden_size", "intermediate_size", "num_hidden_layers", "num_attention_heads",
-            "max_position_embeddings", "hidden_act", "layer_norm_eps")}), indent=2) + "\n")
-    # Names of the text encoder's tensors as in files of transformers 4, whichever version is at work.
-    renamed = lambda name: name.replace("text.", "text.text_model.", 1) if (
-        name.startswith("text.") and not name.startswith("text.text_model.")) else name
-    tensors = {renamed(name): value.half().contiguous() for name, value in model.state_dict().items()
-               if name != "log_scale" and not name.endswith("position_ids")}
-    save_file(tensors, out / "model.safetensors")
+            "max_position_embeddings", "hidden_act", "layer_norm_eps")})
+
+
+def tensors_of(model):
+    """All tensors by their names in the file, in which the text encoder is `text_model`, as in CLIP's own files."""
+    named = {}
+    for name, value in model.state_dict().items():
+        if name != "log_scale" and not name.endswith("position_ids"):
+            # What transformers 4 calls text_model.x is x in transformers 5.
+            named[re.sub(r"^text\.(text_model\.)?", "text_model.", name)] = value
+    return named
+
+
+def save_model(model, tokenizer_folder, out):
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "config.json").write_text(json.dumps(config_of(model), indent=2) + "\n")
+    tensors = tensors_of(model)
+    save_file({name: value.half().contiguous() for name, value in tensors.items()}, out / "model.safetensors")
     (out / "model.safetensors").chmod(0o644)
     for name in ("vocab.json", "merges.txt", "tokenizer_config.json", "special_tokens_map.json"):
         if tokenizer_folder != out:
