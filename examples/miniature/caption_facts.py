@@ -122,6 +122,30 @@ def truth(facts, said):
     return ~wrong & ~unclear, unclear & ~wrong
 
 
+def paints_of(labels):
+    """Which patterns there are of which pairs of colours, in either order [patterns, 7, 7]: 6 where there is no second
+    colour, which says nothing."""
+    known = numpy.zeros((len(PATTERNS), len(COLOURS) + 1, len(COLOURS) + 1), bool)
+    first, second = (numpy.minimum(labels[name], len(COLOURS)) for name in ("first", "second"))
+    known[labels["pattern"], first, second] = True
+    known |= known.transpose(0, 2, 1)
+    known[0] = known[:, len(COLOURS)] = known[:, :, len(COLOURS)] = True
+    return known
+
+
+def of_no_paint(facts, said, known):
+    """Of every picture and every text [pictures, texts]: whether what the text says of the paint, and for the rest the
+    picture's own, make a paint that is not `known`. That the text is not true of the picture then teaches nothing but
+    that such paints are never shown."""
+    column = lambda values, name: values[:, COLUMNS.index(name)]
+    pattern = numpy.where(column(said, "pattern")[None] != UNSAID, column(said, "pattern")[None],
+                          column(facts, "pattern")[:, None])
+    has_pair = (column(said, "second") != UNSAID)[None]
+    first, second = (numpy.minimum(numpy.where(has_pair, column(said, name)[None], column(facts, name)[:, None]),
+                                   len(COLOURS)) for name in ("first", "second"))
+    return ~known[pattern, first, second]
+
+
 class ShortTexts:
     """Texts that say a pattern, colours or both, of a noun or of none."""
 

@@ -27,7 +27,7 @@ from safetensors.torch import save_file
 from torch import nn
 from transformers import CLIPTextConfig, CLIPTextModel, CLIPTokenizer
 
-from caption_facts import ADJECTIVES, COLOURS, NOUNS, PATTERNS, ShortTexts, facts_of_pictures, truth
+from caption_facts import ADJECTIVES, COLOURS, NOUNS, PATTERNS, ShortTexts, facts_of_pictures, of_no_paint, paints_of, truth
 from pictures import Pictures
 from training_run import TrainingRun, keep_freed_memory
 
@@ -59,7 +59,8 @@ class Block(nn.Module):
 
 
 class ImageEncoder(nn.Module):
-    """Vectors [batch, dimension] of images [batch, 3, height, width] in [0, 1], and scores of where their subjects are."""
+    """Vectors [batch, dimension] of images [batch, 3, height, width] in [0, 1], features of places [batch, places,
+    channels], and scores of where the subjects are [batch, rows, columns]."""
 
     def __init__(self, channels=CHANNELS, strides=STRIDES, groups=GROUPS, hidden=HIDDEN, dimension=DIMENSION):
         super().__init__()
@@ -79,22 +80,22 @@ class ImageEncoder(nn.Module):
         inside = ((share * rows).sum(1) / share.sum(1).clamp(min=1e-30)).to(x.dtype)
         means = torch.cat([inside, rows.mean(1)], 1)
         vectors = self.projection(F.silu(self.hidden(means)))
-        return wide(vectors), wide(scores[..., 0]).unflatten(1, x.shape[-2:])
+        return wide(vectors), rows, wide(scores[..., 0]).unflatten(1, x.shape[-2:])
 
 
 class Embedder(nn.Module):
-    """Both encoders, and the temperature that only training needs."""
+    """Both encoders, and what only training needs: the temperature, and a guess at the pattern from each place."""
 
     def __init__(self, text, **shape):
         super().__init__()
         self.image = ImageEncoder(**shape)
         self.text = CLIPTextModel(text)
         self.text_projection = nn.Linear(text.hidden_size, self.image.projection.out_features, bias=False)
+        self.local = nn.Linear(self.image.gate.in_features, len(PATTERNS))
         self.log_scale = nn.Parameter(torch.tensor(math.log(10.0)))
 
     def image_vectors(self, images):
-        vectors, scores = self.image(images)
-        return F.normalize(vectors, dim=-1), scores
+        return F.normalize(self.image(images)[0], dim=-1)
 
     def text_vectors(self, tokens):
         return F.normalize(wide(self.text_projection(self.text(tokens).pooler_output)), dim=-1)
@@ -121,11 +122,13 @@ def augmented(images, random):
     blurred = F.avg_pool2d(padded(images), 3, 1)
     more = torch.from_numpy(random.random(n) < 0.3)
     blurred[more] = F.avg_pool2d(padded(blurred[more]), 3, 1)
-    images = images + uniform(-0.5, 1).clamp(min=0) * (blurred - images)
-    mean = images.mean((1, 2, 3), keepdim=True)
-    images = mean + (images - mean) * uniform(0.8, 1.2) + uniform(-0.08, 0.08)
-    noise = torch.from_numpy(random.standard_normal(images.shape, numpy.float32))
-    return (images + uniform(-0.04, 0.06).clamp(min=0) * noise).clamp(0, 1)
+    images = images.lerp_(blurred, uniform(-0.5, 1).clamp(min=0))
+    contrast, mean = uniform(0.8, 1.2), images.mean((1, 2, 3), keepdim=True)
+    images.mul_(contrast).add_(mean * (1 - contrast) + uniform(-0.08, 0.08))
+    noisy = torch.from_numpy(random.random(n) < 0.6)
+    noise = torch.from_numpy(random.standard_normal(images[noisy].shape, numpy.float32))
+    images[noisy] += noise.mul_(uniform(0, 0.06)[noisy])
+    return images.clamp_(0, 1)
 
 
 def disturbed(text, random):
@@ -144,10 +147,11 @@ class TextLists:
 
     said = [[(p, ()) for p in range(len(PATTERNS))], [(None, c) for c in SINGLES + PAIRS], PAINTS]
 
-    def __init__(self, random):
+    def __init__(self, random, paints):
+        """`paints` are places in PAINTS, the ones that this batch is compared with."""
         choice = lambda words: words[random.integers(len(words))]
         self.texts, self.facts, self.sizes = [], [], []
-        for paints in self.said:
+        for paints in (*self.said[:2], [PAINTS[paint] for paint in paints]):
             short = ShortTexts.drawn(random)
             self.texts += [short(pattern, colours, choice) for pattern, colours in paints]
             self.facts += [short.facts(pattern, colours) for pattern, colours in paints]
@@ -180,7 +184,7 @@ def contrastive_loss(similarities, fits, unclear, captions):
 @torch.no_grad()
 def image_vectors_of(model, pictures):
     parts = numpy.array_split(numpy.arange(len(pictures)), max(1, len(pictures) // 50))
-    return torch.cat([model.image_vectors(pictures.colours_of(part))[0] for part in parts])
+    return torch.cat([model.image_vectors(pictures.colours_of(part)) for part in parts])
 
 
 @torch.no_grad()
@@ -252,7 +256,7 @@ def tensors_of(model):
     """All tensors by their names in the file, in which the text encoder is `text_model`, as in CLIP's own files."""
     named = {}
     for name, value in model.state_dict().items():
-        if name != "log_scale" and not name.endswith("position_ids"):
+        if not name.startswith(("log_scale", "local.")) and not name.endswith("position_ids"):
             # What transformers 4 calls text_model.x is x in transformers 5.
             named[re.sub(r"^text\.(text_model\.)?", "text_model.", name)] = value
     return named
@@ -302,29 +306,43 @@ def main():
     seconds_before = json.loads(timer.read_text()) if timer.exists() and run.step else 0.0
     seconds = lambda: seconds_before + time.process_time()
 
+    known = paints_of(pictures.labels)
+    shown = numpy.unique(targets[2])
+
     def loss_of(random, generator):
         numbers = numpy.sort(random.choice(len(pictures), arguments.batch, replace=False))
         images, masks = pictures.colours_of(numbers), torch.from_numpy(pictures.subjects[numbers]).float() / 255
         mirrored = torch.from_numpy(random.random(len(numbers)) < 0.5)
         images[mirrored], masks[mirrored] = images[mirrored].flip(-1), masks[mirrored].flip(-1)
         images = augmented(images, random).to(precision).contiguous(memory_format=torch.channels_last)
-        lists = TextLists(random)
+        # The paints of the batch, and a few others; never one that no picture has.
+        paints = numpy.union1d(targets[2][numbers], random.choice(shown, min(16, len(shown)), replace=False))
+        lists = TextLists(random, paints)
         captions = [disturbed(pictures.captions[n], random) for n in numbers]
-        vectors, scores = model.image_vectors(images)
+        vectors, rows, scores = model.image(images)
         # Captions are several times as long as the others.
         words = torch.cat([model.text_vectors(tokens_of(tokenizer, texts)) for texts in (captions, lists.texts)])
-        similarities = model.log_scale.float().exp().clamp(max=100) * vectors @ words.T
-        fits, unclear = truth(facts[numbers], numpy.concatenate([said[numbers], numpy.array(lists.facts)]))
-        loss = contrastive_loss(similarities, fits, unclear, len(numbers))
+        similarities = model.log_scale.float().exp().clamp(max=100) * F.normalize(vectors, dim=-1) @ words.T
+        said_here = numpy.concatenate([said[numbers], numpy.array(lists.facts)])
+        fits, unclear = truth(facts[numbers], said_here)
+        unknown = of_no_paint(facts[numbers], said_here, known)
+        loss = contrastive_loss(similarities, fits, unclear | (unknown & ~fits), len(numbers))
         at = len(numbers)
+        wanted = targets[0][numbers], targets[1][numbers], numpy.searchsorted(paints, targets[2][numbers])
         for i, size in enumerate(lists.sizes):
-            part = similarities[:, at:at + size]
+            left_out = unknown[:, at:at + size]
             if i == 1:
-                part = part.masked_fill(torch.from_numpy(besides[numbers]), -1e4)
-            loss = loss + F.cross_entropy(part, torch.from_numpy(targets[i][numbers]))
+                left_out = left_out | besides[numbers]
+            part = similarities[:, at:at + size].masked_fill(torch.from_numpy(left_out), -1e4)
+            loss = loss + F.cross_entropy(part, torch.from_numpy(wanted[i]))
             at += size
+        # What the places say by themselves: whether they are a subject's, and if so of which pattern.
         share = F.adaptive_avg_pool2d(masks[:, None], scores.shape[-2:])[:, 0]
-        return loss + F.binary_cross_entropy_with_logits(scores, share)
+        guesses = model.local(rows).float().transpose(1, 2)
+        pattern = torch.from_numpy(targets[0][numbers])[:, None].expand(-1, guesses.shape[-1])
+        weights = share.flatten(1)
+        local = (weights * F.cross_entropy(guesses, pattern, reduction="none")).sum() / weights.sum().clamp(min=1)
+        return loss + local + F.binary_cross_entropy_with_logits(scores, share)
 
     def trained():
         """The weights as they are: their running mean lags behind a run as short as this."""

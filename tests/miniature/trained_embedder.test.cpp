@@ -46,8 +46,7 @@ TEST_SUITE("miniature/trained_embedder") {
                 }
                 auto const picture =
                     draw_lit(drawn.scene, drawn.paint, {128, 128}, 3, drawn.target, drawn.shadow_radius);
-                seen.push_back({drawn.description, trained_embedder().embed_image(strided_view<float const, 3>(
-                                                       picture.image.data(), {3, 128, 128}))});
+                seen.push_back({drawn.description, trained_embedder().embed_image(picture.image)});
             }
             return seen;
         }();

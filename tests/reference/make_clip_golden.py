@@ -42,7 +42,7 @@ with torch.no_grad():
         else:
             x = x * weight_scale(parameter[0].numel())
         parameter.copy_(x)
-    images = [model.image_vectors(0.5 + 0.5 * tensor(name, 1, 3, *shape))[0][0].tolist()
+    images = [model.image_vectors(0.5 + 0.5 * tensor(name, 1, 3, *shape))[0].tolist()
               for name, shape in (("image", (19, 26)), ("small image", (1, 2)))]
     texts = [model.text_vectors(train_embedder.tokens_of(tokenizer, [words]))[0].tolist() for words in TEXTS]
 
