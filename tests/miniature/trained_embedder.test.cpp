@@ -71,11 +71,11 @@ TEST_SUITE("miniature/trained_embedder") {
             texts.push_back(trained_embedder().embed_text(std::string("a ") + pattern + " ball"));
         }
         std::size_t right = 0;
-        for (auto const& [shows, vector] : seen_pictures()) {
+        for (auto const& seen : seen_pictures()) {
             auto const nearest = std::max_element(texts.begin(), texts.end(), [&](auto const& a, auto const& b) {
-                return likeness(vector, a) < likeness(vector, b);
+                return likeness(seen.vector, a) < likeness(seen.vector, b);
             });
-            right += static_cast<std::size_t>(nearest - texts.begin()) == static_cast<std::size_t>(shows.pattern);
+            right += static_cast<std::size_t>(nearest - texts.begin()) == static_cast<std::size_t>(seen.shows.pattern);
         }
         CHECK(10 * right >= 9 * seen_pictures().size());
         MESSAGE(right, " of ", seen_pictures().size());
@@ -106,11 +106,11 @@ TEST_SUITE("miniature/trained_embedder") {
         }
     }
 
-    TEST_CASE(
-        "a text that gives the subject's colours to the ground is farther than one that leaves them where they are") {
+    TEST_CASE("a text that swaps the colours of subject and ground is farther than the true one") {
         std::size_t right = 0;
         std::size_t asked = 0;
-        for (auto const& [shows, vector] : seen_pictures()) {
+        for (auto const& seen : seen_pictures()) {
+            auto const& shows = seen.shows;
             auto const first = static_cast<std::size_t>(shows.first);
             auto const second = static_cast<std::size_t>(shows.second);
             auto const ground = static_cast<std::size_t>(shows.ground.colour);
@@ -123,7 +123,7 @@ TEST_SUITE("miniature/trained_embedder") {
                                                      " ball on " + std::string(colour_words[below]) + " ground");
             };
             ++asked;
-            right += likeness(vector, text(first, ground)) > likeness(vector, text(ground, first));
+            right += likeness(seen.vector, text(first, ground)) > likeness(seen.vector, text(ground, first));
         }
         REQUIRE(asked > 0);
         CHECK(10 * right >= 9 * asked);
