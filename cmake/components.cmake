@@ -258,6 +258,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/group_norm.hpp
     reference/group_norm.inl
     reference/haar.hpp
+    reference/image_tower.hpp
     reference/layer_norm.hpp
     reference/layer_norm.inl
     reference/linear.hpp
@@ -272,6 +273,7 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/pickles.hpp
     reference/pipeline_files.hpp
     reference/prompt_vocabulary.hpp
+    reference/reference_clip.hpp
     reference/reference_embedder.hpp
     reference/reference_network.hpp
     reference/reference_weights.hpp

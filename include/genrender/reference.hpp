@@ -34,6 +34,7 @@
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/group_norm.hpp>
 #include <genrender/reference/haar.hpp>
+#include <genrender/reference/image_tower.hpp>
 #include <genrender/reference/layer_norm.hpp>
 #include <genrender/reference/linear.hpp>
 #include <genrender/reference/lora_difference.hpp>
@@ -47,6 +48,7 @@
 #include <genrender/reference/pickles.hpp>
 #include <genrender/reference/pipeline_files.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
+#include <genrender/reference/reference_clip.hpp>
 #include <genrender/reference/reference_embedder.hpp>
 #include <genrender/reference/reference_network.hpp>
 #include <genrender/reference/reference_weights.hpp>
