@@ -30,9 +30,12 @@ public:
         if (auto const* const weights = std::get_if<reference_weights<float>>(&networks_)) {
             require_value(weights->config.in_channels == 12, "--pipeline", "channels of the latents",
                           weights->config.in_channels, "12, the Haar bands of a colour image");
-            if (!prompt_.guidance_scale) {
-                prompt_.guidance_scale = 2;
-            }
+        }
+        if (!prompt_.guidance_scale) {
+            auto const is_miniature = options.pipeline == render_options{}.pipeline;
+            prompt_.guidance_scale = std::holds_alternative<reference_weights<float>>(networks_) ? 2
+                                     : is_miniature                                              ? 3
+                                                                                                 : 7.5;
         }
     }
 
@@ -102,7 +105,7 @@ public:
         auto conditioning = pipeline.conditioning(to_view(nearness),
                                                   {.text = prompt_.text,
                                                    .negative = prompt_.negative,
-                                                   .guidance_scale = prompt_.guidance_scale.value_or(7.5),
+                                                   .guidance_scale = *prompt_.guidance_scale,
                                                    .guidance_rescale = prompt_.guidance_rescale,
                                                    .conditioning_scale = prompt_.conditioning_scale,
                                                    .skipped_layers = prompt_.clip_skip},

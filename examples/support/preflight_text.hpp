@@ -62,8 +62,8 @@ inline std::string objects_text(map_check const& maps) {
         std::string lowest;
         std::string greatest;
         for (auto const& range : object.range) {
-            lowest += (lowest.empty() ? "" : " ") + fixed_text(range[0], 2);
-            greatest += (greatest.empty() ? "" : " ") + fixed_text(range[1], 2);
+            lowest.append(lowest.empty() ? "" : " ").append(fixed_text(range[0], 2));
+            greatest.append(greatest.empty() ? "" : " ").append(fixed_text(range[1], 2));
         }
         rows.push_back({std::to_string(object.object.value), std::to_string(object.pixels),
                         std::to_string(object.frames.size()), lowest.empty() ? "-" : lowest,
@@ -104,7 +104,7 @@ inline std::string levels_text(map_check const& maps) {
                     std::to_string(levels.distinct) + " levels in " + std::to_string(levels.samples) +
                     " pixels; in each sixteenth of the range:";
             for (auto const count : levels.histogram) {
-                text += " " + std::to_string(count);
+                text.append(" ").append(std::to_string(count));
             }
             text += "\n";
         }

@@ -11,7 +11,6 @@
 #include <genrender/baselines/per_frame.hpp>
 #include <genrender/core/finite.hpp>
 #include <genrender/core/vector_target.hpp>
-#include <genrender/reference/prompt_vocabulary.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 #include <genrender/sampling/preconditioning.hpp>
 
@@ -30,8 +29,6 @@
 
 namespace genrender::examples {
 
-using namespace genrender::reference;
-
 /// What the pictures shall show, and how strictly.
 struct prompt_options {
     std::string text;
@@ -49,14 +46,14 @@ struct render_options {
     std::filesystem::path maps;
     prompt_options prompt;
     std::filesystem::path out;
-    std::filesystem::path beside;                                             ///< an earlier run to compare with
-    std::filesystem::path pipeline = GENRENDER_REFERENCE_DENOISER "/weights"; ///< a folder, a file, or `random`
-    std::filesystem::path engine;                                             ///< a library; empty: the pipeline
-    std::filesystem::path controlnet;                                         ///< empty: in the pipeline
-    std::filesystem::path tokenizer;                                          ///< empty: in the pipeline
-    std::string variant;                                                      ///< of the files of weights
-    std::optional<prediction> prediction_type;                                ///< of a single file
-    std::vector<std::pair<std::filesystem::path, double>> loras;              ///< files and scales
+    std::filesystem::path beside;                                    ///< an earlier run to compare with
+    std::filesystem::path pipeline = GENRENDER_MINIATURE "/weights"; ///< a folder, a file, or `random`
+    std::filesystem::path engine;                                    ///< a library; empty: the pipeline
+    std::filesystem::path controlnet;                                ///< empty: in the pipeline
+    std::filesystem::path tokenizer;                                 ///< empty: in the pipeline
+    std::string variant;                                             ///< of the files of weights
+    std::optional<prediction> prediction_type;                       ///< of a single file
+    std::vector<std::pair<std::filesystem::path, double>> loras;     ///< files and scales
     std::optional<std::size_t> frames;
     std::optional<std::size_t> keyframes;
     std::size_t size = 0;             ///< height of a frame; 0: the model's usual
@@ -145,13 +142,14 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     auto& of_models = kind == program_kind::of_models ? app : unknown;
     auto const* const prompt_option =
         of_models.add_option("--prompt", options.prompt.text,
-                             "what it shall look like; the reference denoiser knows the words " +
-                                 detail::listed(prompt_words, " ") + "\n(not needed with --check or --plan)");
+                             "what it shall look like; the miniature knows pictures of its small world alone, say\n"
+                             "\"a red and white dotted ball on green ground\" (not needed with --check or --plan)");
     of_models.add_option("--negative-prompt", options.prompt.negative, "what it shall not look like")
         ->type_name("TEXT");
     of_models
-        .add_option("--guidance", options.prompt.guidance_scale,
-                    "scale of classifier-free guidance, 1 for none (7.5; 2 with the reference denoiser)")
+        .add_option(
+            "--guidance", options.prompt.guidance_scale,
+            "scale of classifier-free guidance, 1 for none (7.5; 3 with the miniature, 2 with the reference denoiser)")
         ->check(CLI::Range(0.0, 100.0).description(""))
         ->type_name("G");
     of_models
@@ -252,8 +250,8 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     of_pipeline
         ->add_option(
             "--pipeline", options.pipeline,
-            "a folder in diffusers' layout or a checkpoint in one file (the trained reference denoiser), or the\n"
-            "word random: the reference denoiser without training")
+            "a folder in diffusers' layout or a checkpoint in one file (the miniature that comes with the library),\n"
+            "or the word random: a small network without training")
         ->check(not_empty)
         ->type_name("DIR|FILE");
     of_pipeline
