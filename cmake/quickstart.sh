@@ -23,6 +23,11 @@ sh cmake/quickstart.sh WHAT
             NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
             earlier run, with --no-peers without the programs of others (benchmarks/README.md)
+  engines   programs of other engines with this library in them: LibTorch from a virtual environment of its own
+            (build/engines), and whatever else of examples/engines/ is to be had; prints one table of them, and what was
+            skipped and why. With GENRENDER_PEER_PYTHON that Python's packages are used and none is installed
+  gpu       on a machine with an NVIDIA GPU, in five minutes: the fused kernel of eq. 6 against the host's, its speed
+            against a copy's, and a whole run of LibTorch on the GPU against the processor's
   docs      the reference of every public name, from the comments above them (build/docs/html/index.html)
   packages  install the Debian packages that all of these need, and do no more
 
@@ -38,6 +43,8 @@ bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev li
     libbenchmark-dev libcli11-dev nlohmann-json3-dev libutf8proc-dev"
 # What its tests need besides.
 test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels valgrind"
+engine_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
+    nlohmann-json3-dev libutf8proc-dev doctest-dev python3-venv"
 # What reads the sources without compiling them. Another clang-format would break other lines.
 docs_packages="cmake doxygen"
 slow_check_packages="$test_packages $docs_packages clang-format-14 clang-tidy"
@@ -198,6 +205,36 @@ bench() {
     ls build/bench/benchmarks.*
 }
 
+# A Python whose packages the clients use: the one that is named, else one of build/engines, made once. Of LibTorch's package
+# only what its libraries for the processor need is installed with it, which is a tenth of all.
+engine_python() {
+    if [ -n "${GENRENDER_PEER_PYTHON-}" ]; then
+        python=$GENRENDER_PEER_PYTHON
+        return
+    fi
+    python=build/engines/python/bin/python
+    if [ ! -x "$python" ]; then
+        say "A virtual environment for the engines' packages"
+        python3 -m venv build/engines/python
+    fi
+    if ! "$python" -c 'import importlib.metadata as m; m.version("torch"), m.version("nvidia-cuda-cupti")' 2>/dev/null; then
+        "$python" -m pip install --quiet --no-deps torch
+        toolkit=$("$python" -c 'import importlib.metadata as m
+print(*[line.split("==")[1].split(";")[0].strip() for line in m.requires("torch") if line.startswith("cuda-toolkit")])')
+        if [ -n "$toolkit" ]; then
+            "$python" -m pip install --quiet "cuda-toolkit[cudart,cupti]==$toolkit"
+        fi
+    fi
+}
+
+engines() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $engine_packages
+    engine_python
+    say "Building and running the clients"
+    cmake -D BUILD=build/engines -D "PYTHON=$python" -P examples/engines/table.cmake
+}
+
 docs() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $docs_packages
@@ -220,6 +257,7 @@ case ${1-} in
         shift
         bench "$@"
         ;;
+    engines) engines ;;
     docs) docs ;;
     packages) # shellcheck disable=SC2086 # a list of words
         install_packages $slow_check_packages $evaluate_packages ;;

@@ -5,6 +5,8 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/blending/call_rows.hpp>
+#include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/plan_key.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -57,6 +59,7 @@ class torch_plans {
 public:
     /// The plans as they are handed to `mix`, on the device. Throws as make_call_rows does.
     torch_rows rows(std::span<sparse_rows<float> const> plans, float alpha, at::Device device) const {
+        require_value(is_finite(alpha), "torch_plans", "alpha", alpha, "a finite number"); // also as a key
         place_of_plans place{{}, alpha, static_cast<int>(device.type()), device.index()};
         for (auto const& plan : plans) {
             if (!plan.key) {

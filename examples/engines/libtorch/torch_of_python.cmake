@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+# Defines the target `torch`: ATen on the processor, from the package that pip installs. find_package(Torch) of that package asks
+# for a whole CUDA toolkit if it was built for one; these two libraries need only its runtime and cupti, which pip installs
+# beside them and they find by themselves. Without a package `genrender_torch_missing` is a sentence.
+set(genrender_torch_missing "")
+execute_process(COMMAND ${GENRENDER_ENGINE_PYTHON} -c
+    "import importlib.util as u; s = u.find_spec('torch'); print(s.submodule_search_locations[0] if s else '')"
+    OUTPUT_VARIABLE torch_folder OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
+if(failed OR NOT EXISTS "${torch_folder}/include/ATen/ATen.h")
+    set(genrender_torch_missing "${GENRENDER_ENGINE_PYTHON} has no package torch with headers")
+    return()
+endif()
+add_library(torch INTERFACE IMPORTED GLOBAL)
+set_target_properties(torch PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "${torch_folder}/include"
+    INTERFACE_LINK_LIBRARIES "${torch_folder}/lib/libtorch_cpu.so;${torch_folder}/lib/libc10.so")
