@@ -317,3 +317,6 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
 genrender_adapter(torch PACKAGES Torch HEADERS
     adapters/torch.hpp
     adapters/torch_plans.hpp)
+
+genrender_adapter(cuda HEADERS
+    adapters/cuda/mix_rows.cuh)
