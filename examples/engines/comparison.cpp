@@ -10,9 +10,9 @@
 #include <genrender/scene/rasterizer.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 
@@ -49,10 +49,11 @@ engine_case case_of(std::filesystem::path const& folder, std::size_t size) {
     return run;
 }
 
+/// Seconds of the processor's time, which other programs of the machine do not lengthen.
 double seconds_of(std::function<void()> const& work) {
-    auto const start = std::chrono::steady_clock::now();
+    auto const start = std::clock();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 /// The greatest difference of two stacks, in parts of the range of the second.

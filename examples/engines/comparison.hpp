@@ -47,7 +47,7 @@ struct engine_frames {
 ///
 ///     engine | way in | - | - | greatest difference | run s against the reference network | library outside the denoiser
 ///
-/// where `-` are lines and seconds of compiling, which table.cmake knows. The difference is a share of the range of the
+/// where `-` are lines and seconds of compiling, which table.cmake knows, and run s are of the processor's time. The difference is a share of the range of the
 /// reference's latents, the greatest of both sizes. Returns 0; 1 if it is above `bound`, if an engine without injection
 /// would pass too, or with a sentence if something throws.
 int compare_engine(std::string_view engine, std::string_view way_in, double bound,
