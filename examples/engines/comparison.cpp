@@ -4,7 +4,6 @@
 
 #include "../scenes/camera_rotation.hpp"
 
-#include <genrender/pipeline/render.hpp>
 #include <genrender/reference/reference_network.hpp>
 #include <genrender/reference/safetensors.hpp>
 #include <genrender/scene/rasterizer.hpp>
@@ -71,7 +70,7 @@ double difference(latents<float> const& z, latents<float> const& reference) {
 } // namespace
 
 int compare_engine(std::string_view engine, std::string_view way_in, double bound,
-                   std::function<engine_frames(engine_case const&)> const& run) {
+                   std::function<render_result<float>(engine_case const&)> const& run) {
     try {
         std::filesystem::path const folder = GENRENDER_REFERENCE_DENOISER "/weights";
         double greatest = 0;
@@ -86,7 +85,7 @@ int compare_engine(std::string_view engine, std::string_view way_in, double boun
                 return genrender::render(network, to_uv_view(given.UV), {.settings = settings}).z;
             };
             latents<float> reference;
-            engine_frames frames;
+            render_result<float> frames;
             auto const reference_seconds = seconds_of([&] { reference = rendered(given.settings); });
             auto const engine_seconds = seconds_of([&] { frames = run(given); });
             greatest = std::max(greatest, difference(frames.z, reference));

@@ -3,9 +3,8 @@
 // engine's frames make beside those of the library's own network.
 #pragma once
 
-#include <genrender/core/tensor.hpp>
 #include <genrender/maps/uv_maps.hpp>
-#include <genrender/pipeline/render_report.hpp>
+#include <genrender/pipeline/render.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 #include <genrender/reference/network_conditioning.hpp>
 #include <genrender/reference/unet_config.hpp>
@@ -36,12 +35,6 @@ struct engine_case {
     render_settings<float> settings;
 };
 
-/// The frames of an engine, and what its run told.
-struct engine_frames {
-    latents<float> z;
-    render_report report;
-};
-
 /// Renders 8 frames of 64 and of 128 pixels by `run` and by the library's own network, both told the same, on one thread, and
 /// prints the line
 ///
@@ -51,6 +44,6 @@ struct engine_frames {
 /// reference's latents, the greatest of both sizes. Returns 0; 1 if it is above `bound`, if an engine without injection
 /// would pass too, or with a sentence if something throws.
 int compare_engine(std::string_view engine, std::string_view way_in, double bound,
-                   std::function<engine_frames(engine_case const&)> const& run);
+                   std::function<render_result<float>(engine_case const&)> const& run);
 
 } // namespace genrender::examples

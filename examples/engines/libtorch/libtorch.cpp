@@ -9,46 +9,35 @@
 #include <genrender/sampling/preconditioning.hpp>
 
 #include <ATen/Parallel.h>
-#include <ATen/ops/stack.h>
-#include <c10/core/InferenceMode.h>
 
 using namespace genrender;
 using namespace genrender::adapters;
 using namespace genrender::examples;
 
-// docs:begin libtorch_modules
-/// A self-attention module: which site it is, and its matrices.
-struct torch_site {
-    site_index index;
-    torch_module module;
-};
+// docs:begin libtorch_sites
+/// The self-attention modules of a UNet on latents of this grid: each one's site, and its matrices.
+struct torch_sites {
+    std::vector<attention_site> sites;
+    std::map<std::string, std::pair<site_index, torch_module>> by_name;
 
-/// The sites of a UNet on latents of this grid, and its modules by name.
-inline std::map<std::string, torch_site> find_sites(engine::network const& unet, grid_extents grid,
-                                                    std::vector<attention_site>& sites) {
-    std::map<std::string, torch_site> found;
-    for (auto const& [tensor, Q] : unet.tensors) {
-        auto const end = tensor.find(".attn1.to_q.weight");
-        if (end == std::string::npos) {
-            continue;
+    torch_sites(engine::network const& unet, grid_extents grid) {
+        for (auto const& [tensor, Q] : unet.tensors) {
+            if (auto const end = tensor.find(".attn1.to_q.weight"); end != std::string::npos) {
+                auto const name = tensor.substr(0, end) + ".attn1";
+                auto const part = name[0] == 'u'   ? network_part::decoder
+                                  : name[0] == 'd' ? network_part::encoder
+                                                   : network_part::middle;
+                auto const level = unet.level_of(name);
+                site_index const index{static_cast<std::uint32_t>(sites.size())};
+                by_name[name] = {index, torch_module::of_matrices(Q, unet.weight(name + ".to_k"),
+                                                                  unet.weight(name + ".to_v"), unet.heads_of(name))};
+                auto const channels = static_cast<std::size_t>(Q.size(0));
+                sites.push_back(
+                    {name, network_kind::denoising, part, {grid.height >> level, grid.width >> level}, channels});
+            }
         }
-        auto const name = tensor.substr(0, end) + ".attn1";
-        auto const is_up = name.starts_with("up_blocks.");
-        auto const is_down = name.starts_with("down_blocks.");
-        auto const number = is_up || is_down ? std::stoi(name.substr(name.find('.') + 1)) : 0;
-        auto const level = static_cast<std::size_t>(is_down ? number : unet.last_level() - number);
-        auto const part = is_up ? network_part::decoder : is_down ? network_part::encoder : network_part::middle;
-        found[name] = {
-            {static_cast<std::uint32_t>(sites.size())},
-            torch_module::of_matrices(Q, unet.weight(name + ".to_k"), unet.weight(name + ".to_v"), unet.heads[level])};
-        sites.push_back({name,
-                         network_kind::denoising,
-                         part,
-                         {grid.height >> level, grid.width >> level},
-                         static_cast<std::size_t>(Q.size(0))});
     }
-    return found;
-}
+};
 // docs:end
 
 // docs:begin libtorch_denoiser
@@ -62,14 +51,13 @@ struct torch_denoiser {
     float guidance;
     prediction predicted;
     grid_extents grid;
-    std::vector<attention_site> modules;
-    std::map<std::string, torch_site> sites_by_name = find_sites(unet, grid, modules);
+    torch_sites modules{unet, grid};
     discrete_noise_schedule schedule{};
     torch_plans plans{};
 
     std::size_t latent_channels() const { return static_cast<std::size_t>(unet.weight("conv_in").size(1)); }
     grid_extents latent_grid() const { return grid; }
-    std::span<attention_site const> sites() const { return modules; }
+    std::span<attention_site const> sites() const { return modules.sites; }
     std::size_t branches() const { return prompts.size(); }
 
     template <attention_processor<torch_attention_call> Processor>
@@ -85,8 +73,8 @@ struct torch_denoiser {
         std::array<at::Tensor, 2> outputs;
         for (std::uint32_t branch = 0; branch < outputs.size(); ++branch) {
             auto const run = [&](std::string const& name, at::Tensor const& f) -> at::Tensor {
-                auto const& site = sites_by_name.at(name);
-                torch_attention_call call({site.index, branch}, frames, f, site.module, plans);
+                auto const& [index, module] = modules.by_name.at(name);
+                torch_attention_call call({index, branch}, frames, f, module, plans);
                 return processor(call);
             };
             outputs[branch] = engine::predict(unet, control, c_in * noisy, schedule.t_of(sigma), prompts[branch],
@@ -114,8 +102,7 @@ inline engine::network network_of(std::map<std::string, named_tensor> const& fil
 
 int main() {
     at::set_num_threads(1);
-    return compare_engine("LibTorch", "callback", 1e-4, [](engine_case const& given) -> engine_frames {
-        c10::InferenceMode const no_gradients;
+    return compare_engine("LibTorch", "callback", 1e-4, [](engine_case const& given) {
         auto const& told = given.conditioning;
         auto const control = network_of(given.controlnet, given.config);
         auto const scale = given.config.hint_scale();
@@ -126,10 +113,8 @@ int main() {
                                  {tensor_of(told.empty_prompt.view()), tensor_of(told.prompt.view())},
                                  told.guidance_scale,
                                  given.config.prediction_type,
-                                 {told.hint.extent(2) / scale, told.hint.extent(3) / scale},
-                                 {}};
-        auto result = render(phi, to_uv_view(given.UV), {.settings = given.settings});
+                                 {told.hint.extent(2) / scale, told.hint.extent(3) / scale}};
+        return render(phi, to_uv_view(given.UV), {.settings = given.settings});
         // docs:end
-        return {std::move(result.z), std::move(result.report)};
     });
 }

@@ -41,6 +41,12 @@ struct network {
         return tensors.count(name + ".bias") > 0 ? tensors.at(name + ".bias") : tensor();
     }
     std::int64_t last_level() const { return static_cast<std::int64_t>(heads.size()) - 1; }
+    /// Of the block that a module is in: 0 is the finest.
+    std::int64_t level_of(std::string const& module) const {
+        auto const number = module[0] == 'm' ? last_level() : std::stoll(module.substr(module.find('.') + 1));
+        return module[0] == 'u' ? last_level() - number : number;
+    }
+    std::int64_t heads_of(std::string const& module) const { return heads[static_cast<std::size_t>(level_of(module))]; }
 
     tensor conv(tensor const& x, std::string const& name, std::int64_t stride = 1) const {
         return at::conv2d(x, weight(name), bias(name), stride, weight(name).size(2) / 2);
@@ -60,15 +66,14 @@ struct network {
         auto const y = conv(at::silu(norm(h, name + ".norm2")), name + ".conv2");
         return y + (has(name + ".conv_shortcut") ? conv(x, name + ".conv_shortcut") : x);
     }
-    tensor transformer(tensor const& x, context const& in, std::string const& name, std::int64_t level) const {
+    tensor transformer(tensor const& x, context const& in, std::string const& name) const {
         auto h = linear(norm(x, name + ".norm", 1e-6).flatten(2).transpose(1, 2), name + ".proj_in");
         for (int i = 0; has(name + ".transformer_blocks." + std::to_string(i) + ".norm1"); ++i) {
             auto const block = name + ".transformer_blocks." + std::to_string(i);
             h = h + linear(in.run(block + ".attn1", layer_norm(h, block + ".norm1")), block + ".attn1.to_out.0");
             auto const Q = linear(layer_norm(h, block + ".norm2"), block + ".attn2.to_q");
             auto const K = linear(in.prompt, block + ".attn2.to_k");
-            auto const F =
-                attention(Q, K, linear(in.prompt, block + ".attn2.to_v"), heads[static_cast<std::size_t>(level)]);
+            auto const F = attention(Q, K, linear(in.prompt, block + ".attn2.to_v"), heads_of(name));
             h = h + linear(F, block + ".attn2.to_out.0");
             auto const parts = linear(layer_norm(h, block + ".norm3"), block + ".ff.net.0.proj").chunk(2, -1);
             h = h + linear(parts[0] * at::gelu(parts[1]), block + ".ff.net.2");
@@ -76,10 +81,10 @@ struct network {
         return x + linear(h, name + ".proj_out").transpose(1, 2).unflatten(2, {x.size(2), x.size(3)});
     }
     /// A resnet of a block, and the attention behind it if there is one.
-    tensor layer(tensor const& x, context const& in, std::string const& block, int i, std::int64_t level) const {
+    tensor layer(tensor const& x, context const& in, std::string const& block, int i) const {
         auto const h = resnet(x, in, block + ".resnets." + std::to_string(i));
         auto const behind = block + ".attentions." + std::to_string(i);
-        return has(behind + ".norm") ? transformer(h, in, behind, level) : h;
+        return has(behind + ".norm") ? transformer(h, in, behind) : h;
     }
     tensor embedded_time(double t) const {
         auto const half = weight("time_embedding.linear_1").size(1) / 2;
@@ -94,13 +99,13 @@ struct network {
         for (std::int64_t level = 0; level <= last_level(); ++level) {
             auto const block = "down_blocks." + std::to_string(level);
             for (int i = 0; has(block + ".resnets." + std::to_string(i) + ".conv1"); ++i) {
-                maps.push_back(layer(maps.back(), in, block, i, level));
+                maps.push_back(layer(maps.back(), in, block, i));
             }
             if (has(block + ".downsamplers.0.conv")) {
                 maps.push_back(conv(maps.back(), block + ".downsamplers.0.conv", 2));
             }
         }
-        maps.push_back(resnet(layer(maps.back(), in, "mid_block", 0, last_level()), in, "mid_block.resnets.1"));
+        maps.push_back(resnet(layer(maps.back(), in, "mid_block", 0), in, "mid_block.resnets.1"));
         return maps;
     }
     tensor decode(std::vector<tensor> maps, context const& in) const {
@@ -109,7 +114,7 @@ struct network {
         for (std::int64_t number = 0; number <= last_level(); ++number) {
             auto const block = "up_blocks." + std::to_string(number);
             for (int i = 0; has(block + ".resnets." + std::to_string(i) + ".conv1"); ++i) {
-                h = layer(at::cat({h, maps.back()}, 1), in, block, i, last_level() - number);
+                h = layer(at::cat({h, maps.back()}, 1), in, block, i);
                 maps.pop_back();
             }
             if (has(block + ".upsamplers.0.conv")) {
@@ -142,9 +147,7 @@ inline tensor predict(network const& unet, network const& control, tensor const&
                       tensor const& hint, self_attention const& run) {
     self_attention const own = [&](std::string const& name, tensor const& f) {
         auto const project = [&](char const* part) { return control.linear(f, name + part); };
-        auto const level = name.rfind("down_blocks.", 0) == 0 ? name[12] - '0' : control.last_level();
-        return attention(project(".to_q"), project(".to_k"), project(".to_v"),
-                         control.heads[static_cast<std::size_t>(level)]);
+        return attention(project(".to_q"), project(".to_k"), project(".to_v"), control.heads_of(name));
     };
     auto const words = prompt.expand({z.size(0), -1, -1});
     auto const added = control.control(z, {control.embedded_time(t), words, own}, hint);
