@@ -235,6 +235,33 @@ engines() {
     cmake -D BUILD=build/engines -D "PYTHON=$python" -P examples/engines/table.cmake
 }
 
+gpu() {
+    if ! nvidia-smi -L 2>/dev/null | grep -q '^GPU'; then
+        say "There is no NVIDIA GPU here. Skipped: the kernel of eq. 6 against the host's and its speed; a whole run on the GPU"
+        return
+    fi
+    nvcc=$(command -v nvcc || echo /usr/local/cuda/bin/nvcc)
+    if [ ! -x "$nvcc" ]; then
+        stop "nvcc is not found, neither in PATH nor in /usr/local/cuda/bin: install a CUDA toolkit, which compiles the kernel."
+    fi
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $engine_packages
+    mkdir -p build/engines
+    say "The kernel of eq. 6"
+    "$nvcc" -std=c++20 -O2 -arch=native -I include -o build/engines/mix_rows_on_device \
+        examples/engines/gpu/mix_rows_on_device.cu
+    build/engines/mix_rows_on_device
+    python=${GENRENDER_PEER_PYTHON:-python3}
+    if ! "$python" -c 'import torch; assert torch.cuda.is_available()' 2>/dev/null; then
+        say "$python has no PyTorch that sees the GPU (GENRENDER_PEER_PYTHON names another). Skipped: a whole run on the GPU"
+        return
+    fi
+    say "A whole run of LibTorch on the GPU, against the processor's"
+    # Convolutions of 10 bits, cuDNN's usual ones, are further from the processor's than the bound.
+    NVIDIA_TF32_OVERRIDE=0 GENRENDER_ENGINE_DEVICE=cuda cmake -D BUILD=build/engines/gpu -D ENGINES=libtorch -D "PYTHON=$python" \
+        -D OPTIONS=-DGENRENDER_TORCH_CUDA=ON -P examples/engines/table.cmake
+}
+
 docs() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $docs_packages
@@ -258,6 +285,7 @@ case ${1-} in
         bench "$@"
         ;;
     engines) engines ;;
+    gpu) gpu ;;
     docs) docs ;;
     packages) # shellcheck disable=SC2086 # a list of words
         install_packages $slow_check_packages $evaluate_packages ;;

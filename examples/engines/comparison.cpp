@@ -19,9 +19,9 @@ namespace genrender::examples {
 
 namespace {
 
-std::map<std::string, named_tensor> tensors_of(std::filesystem::path const& folder) {
+named_tensors tensors_of(std::filesystem::path const& folder) {
     reference::safetensors_file const file((folder / "diffusion_pytorch_model.safetensors").string());
-    std::map<std::string, named_tensor> tensors;
+    named_tensors tensors;
     for (auto const& [name, entry] : file.entries()) {
         tensors[name] = {entry.shape, file.read<float>(name)};
     }

@@ -24,12 +24,14 @@ struct named_tensor {
     std::vector<float> values;
 };
 
+using named_tensors = std::map<std::string, named_tensor>; ///< of a file
+
 /// What a run is given: the architecture and all tensors of both networks, tokens of the prompts and the hint of every
 /// frame, maps and settings.
 struct engine_case {
     reference::unet_config config;
-    std::map<std::string, named_tensor> unet;
-    std::map<std::string, named_tensor> controlnet;
+    named_tensors unet;
+    named_tensors controlnet;
     reference::network_conditioning<float> conditioning;
     uv_maps UV;
     render_settings<float> settings;

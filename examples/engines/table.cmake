@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 # Builds, tests and runs the clients of engines, each a project of its own folder here, and prints one table of their rows.
 #
-#   cmake -D BUILD=<folder> [-D ENGINES=<names>] [-D PYTHON=<path>] [-D COMPILER=<path>] -P table.cmake
+#   cmake -D BUILD=<folder> [-D ENGINES=<names>] [-D PYTHON=<path>] [-D COMPILER=<path>] [-D OPTIONS=<list>] -P table.cmake
 #
-# A client's project defines the target client_<folder>, which links engine_comparison and prints a row; -D
+# OPTIONS are further arguments for configuring. A client's project defines the target client_<folder>, which links engine_comparison and prints a row; -D
 # GENRENDER_ENGINE_PYTHON tells it the Python whose packages it may use: PYTHON, else the one that the environment variable
 # GENRENDER_PEER_PYTHON names, else python3. A project whose engine is not there fails with a sentence `skipped: ...`. A `-`
 # in a row is filled in here: lines of code without comments, of files `network.*` and of all others, and the seconds that
@@ -22,6 +22,9 @@ if(NOT PYTHON)
     endif()
 endif()
 set(options -D GENRENDER_ENGINE_PYTHON=${PYTHON})
+if(OPTIONS)
+    list(APPEND options ${OPTIONS})
+endif()
 if(COMPILER)
     list(APPEND options -D CMAKE_CXX_COMPILER=${COMPILER})
 endif()

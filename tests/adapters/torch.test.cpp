@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The attention call of LibTorch against the library's own call of the same module.
 #include <genrender/adapters/torch.hpp>
 
 #include <genrender/attention/host_features.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Plans as tensors: what they hold, and how often they are uploaded.
 #include <genrender/adapters/torch_plans.hpp>
 
 #include <ATen/ATen.h>

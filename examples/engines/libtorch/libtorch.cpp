@@ -10,6 +10,8 @@
 
 #include <ATen/Parallel.h>
 
+#include <cstdlib>
+
 using namespace genrender;
 using namespace genrender::adapters;
 using namespace genrender::examples;
@@ -21,12 +23,11 @@ struct torch_sites {
     std::map<std::string, std::pair<site_index, torch_module>> by_name;
 
     torch_sites(engine::network const& unet, grid_extents grid) {
+        using enum network_part;
         for (auto const& [tensor, Q] : unet.tensors) {
             if (auto const end = tensor.find(".attn1.to_q.weight"); end != std::string::npos) {
                 auto const name = tensor.substr(0, end) + ".attn1";
-                auto const part = name[0] == 'u'   ? network_part::decoder
-                                  : name[0] == 'd' ? network_part::encoder
-                                                   : network_part::middle;
+                auto const part = name[0] == 'u' ? decoder : name[0] == 'd' ? encoder : middle;
                 auto const level = unet.level_of(name);
                 site_index const index{static_cast<std::uint32_t>(sites.size())};
                 by_name[name] = {index, torch_module::of_matrices(Q, unet.weight(name + ".to_k"),
@@ -50,7 +51,7 @@ struct torch_denoiser {
     std::array<at::Tensor, 2> prompts;
     float guidance;
     prediction predicted;
-    grid_extents grid;
+    grid_extents grid{static_cast<std::size_t>(hints.size(2)), static_cast<std::size_t>(hints.size(3))};
     torch_sites modules{unet, grid};
     discrete_noise_schedule schedule{};
     torch_plans plans{};
@@ -87,33 +88,32 @@ struct torch_denoiser {
 // docs:end
 
 /// The network of a folder's tensors.
-inline engine::network network_of(std::map<std::string, named_tensor> const& file,
-                                  reference::unet_config const& config) {
-    engine::network network{{},
-                            {config.attention_head_dim.begin(), config.attention_head_dim.end()},
-                            static_cast<std::int64_t>(config.norm_num_groups)};
+inline engine::network network_of(named_tensors const& file, reference::unet_config const& config, at::Device device) {
+    auto const& heads = config.attention_head_dim;
+    engine::network network{{}, {heads.begin(), heads.end()}, static_cast<std::int64_t>(config.norm_num_groups)};
     for (auto const& [name, tensor] : file) {
         std::vector<std::int64_t> const shape(tensor.shape.begin(), tensor.shape.end());
         auto const all = tensor_of(strided_view<float const, 1>(tensor.values.data(), {tensor.values.size()}));
-        network.tensors[name] = all.view(shape).clone();
+        network.tensors[name] = all.view(shape).to(device, at::kFloat, false, true);
     }
     return network;
 }
 
 int main() {
     at::set_num_threads(1);
-    return compare_engine("LibTorch", "callback", 1e-4, [](engine_case const& given) {
+    auto const* const named = std::getenv("GENRENDER_ENGINE_DEVICE");
+    at::Device const device(named != nullptr ? named : "cpu");
+    return compare_engine("LibTorch on " + device.str(), "callback", 1e-4, [&](engine_case const& given) {
         auto const& told = given.conditioning;
-        auto const control = network_of(given.controlnet, given.config);
-        auto const scale = given.config.hint_scale();
+        auto const control = network_of(given.controlnet, given.config, device);
         // docs:begin libtorch_render
-        torch_denoiser const phi{network_of(given.unet, given.config),
-                                 control,
-                                 control.embedded_hint(tensor_of(told.hint.view())),
-                                 {tensor_of(told.empty_prompt.view()), tensor_of(told.prompt.view())},
-                                 told.guidance_scale,
-                                 given.config.prediction_type,
-                                 {told.hint.extent(2) / scale, told.hint.extent(3) / scale}};
+        torch_denoiser const phi{
+            network_of(given.unet, given.config, device),
+            control,
+            control.embedded_hint(tensor_of(told.hint.view()).to(device)),
+            {tensor_of(told.empty_prompt.view()).to(device), tensor_of(told.prompt.view()).to(device)},
+            told.guidance_scale,
+            given.config.prediction_type};
         return render(phi, to_uv_view(given.UV), {.settings = given.settings});
         // docs:end
     });
