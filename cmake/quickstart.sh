@@ -23,9 +23,9 @@ sh cmake/quickstart.sh WHAT
             NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
             earlier run, with --no-peers without the programs of others (benchmarks/README.md)
-  engines   programs of other engines with this library in them: LibTorch from a virtual environment of its own
-            (build/engines), and whatever else of examples/engines/ is to be had; prints one table of them, and what was
-            skipped and why. With GENRENDER_PEER_PYTHON that Python's packages are used and none is installed
+  engines   programs of other engines with this library in them, each of examples/engines/ that is to be had: fetches the
+            engines into build/engines, compares their frames and prints one table, and what was skipped and why;
+            LibTorch is that of the Python that GENRENDER_PEER_PYTHON names, where it has it
   gpu       on a machine with an NVIDIA GPU, in five minutes: the fused kernel of eq. 6 against the host's, its speed
             against a copy's, and a whole run of LibTorch on the GPU against the processor's
   docs      the reference of every public name, from the comments above them (build/docs/html/index.html)
@@ -205,34 +205,17 @@ bench() {
     ls build/bench/benchmarks.*
 }
 
-# A Python whose packages the clients use: the one that is named, else one of build/engines, made once. Of LibTorch's package
-# only what its libraries for the processor need is installed with it, which is a tenth of all.
-engine_python() {
-    if [ -n "${GENRENDER_PEER_PYTHON-}" ]; then
-        python=$GENRENDER_PEER_PYTHON
-        return
-    fi
-    python=build/engines/python/bin/python
-    if [ ! -x "$python" ]; then
-        say "A virtual environment for the engines' packages"
-        python3 -m venv build/engines/python
-    fi
-    if ! "$python" -c 'import importlib.metadata as m; m.version("torch"), m.version("nvidia-cuda-cupti")' 2>/dev/null; then
-        "$python" -m pip install --quiet --no-deps torch
-        toolkit=$("$python" -c 'import importlib.metadata as m
-print(*[line.split("==")[1].split(";")[0].strip() for line in m.requires("torch") if line.startswith("cuda-toolkit")])')
-        if [ -n "$toolkit" ]; then
-            "$python" -m pip install --quiet "cuda-toolkit[cudart,cupti]==$toolkit"
-        fi
-    fi
-}
-
+# Engines are fetched into build/engines, each by a script of its own; one that is not to be had is skipped.
 engines() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $engine_packages
-    engine_python
+    for script in examples/engines/*/get.sh; do
+        engine=$(basename "$(dirname "$script")")
+        say "Fetching $engine"
+        sh "$script" "build/engines/$engine" || say "$engine is not to be had"
+    done
     say "Building and running the clients"
-    cmake -D BUILD=build/engines -D "PYTHON=$python" -P examples/engines/table.cmake
+    cmake -D BUILD=build/engines/clients -P examples/engines/table.cmake
 }
 
 gpu() {
@@ -258,7 +241,7 @@ gpu() {
     fi
     say "A whole run of LibTorch on the GPU, against the processor's"
     # Convolutions of 10 bits, cuDNN's usual ones, are further from the processor's than the bound.
-    NVIDIA_TF32_OVERRIDE=0 GENRENDER_ENGINE_DEVICE=cuda cmake -D BUILD=build/engines/gpu -D ENGINES=libtorch -D "PYTHON=$python" \
+    NVIDIA_TF32_OVERRIDE=0 GENRENDER_ENGINE_DEVICE=cuda cmake -D BUILD=build/engines/clients_gpu -D ENGINES=libtorch -D "PYTHON=$python" \
         -D OPTIONS=-DGENRENDER_TORCH_CUDA=ON -P examples/engines/table.cmake
 }
 

@@ -1,14 +1,20 @@
 # SPDX-License-Identifier: MIT
 # Defines the target `torch`: ATen on the processor, from the package that pip installs. find_package(Torch) of that package asks
 # for a whole CUDA toolkit if it was built for one; these two libraries need only its runtime and cupti, which pip installs
-# beside them and they find by themselves. With GENRENDER_TORCH_CUDA its library for CUDA devices, too, which needs all that pip
-# installs. Without a package `genrender_torch_missing` is a sentence.
-set(genrender_torch_missing "")
-execute_process(COMMAND ${GENRENDER_ENGINE_PYTHON} -c
-    "import importlib.util as u; s = u.find_spec('torch'); print(s.submodule_search_locations[0] if s else '')"
-    OUTPUT_VARIABLE torch_folder OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
-if(failed OR NOT EXISTS "${torch_folder}/include/ATen/ATen.h")
-    set(genrender_torch_missing "${GENRENDER_ENGINE_PYTHON} has no package torch with headers")
+# beside them and they find by themselves (get.sh). The Python is GENRENDER_ENGINE_PYTHON, or that of get.sh. With
+# GENRENDER_TORCH_CUDA its library for CUDA devices, too, which needs all that pip installs. Where there is no package
+# `genrender_torch_missing` is a sentence.
+set(genrender_torch_missing "${GENRENDER_ENGINE_PYTHON} has no package torch with headers, nor has build/engines/libtorch")
+foreach(python IN ITEMS ${GENRENDER_ENGINE_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/../../../build/engines/libtorch/bin/python3)
+    execute_process(COMMAND ${python} -c
+        "import importlib.util as u; s = u.find_spec('torch'); print(s.submodule_search_locations[0] if s else '')"
+        OUTPUT_VARIABLE torch_folder OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    if(EXISTS "${torch_folder}/include/ATen/ATen.h")
+        set(genrender_torch_missing "")
+        break()
+    endif()
+endforeach()
+if(genrender_torch_missing)
     return()
 endif()
 add_library(torch INTERFACE IMPORTED GLOBAL)

@@ -1,0 +1,22 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# sh get.sh DIR: installs LibTorch into a virtual environment in DIR, the package torch without what its libraries for the
+# processor do not need, which is most of it. Needs python3 with venv; does nothing where DIR has it, or the Python that
+# GENRENDER_PEER_PYTHON names.
+set -eu
+dir=${1:?usage: sh get.sh DIR}
+python=${GENRENDER_PEER_PYTHON:-python3}
+has_torch() {
+    "$1" -c 'import importlib.metadata as m; m.version("torch")
+if any(line.startswith("cuda-toolkit") for line in m.requires("torch")): m.version("nvidia-cuda-cupti")' 2>/dev/null
+}
+if has_torch "$python" || has_torch "$dir/bin/python3"; then
+    exit 0
+fi
+"$python" -m venv "$dir"
+"$dir/bin/pip" install -q --disable-pip-version-check --no-deps torch
+toolkit=$("$dir/bin/python3" -c 'import importlib.metadata as m
+print(*[line.split("==")[1].split(";")[0].strip() for line in m.requires("torch") if line.startswith("cuda-toolkit")])')
+if [ -n "$toolkit" ]; then
+    "$dir/bin/pip" install -q --disable-pip-version-check "cuda-toolkit[cudart,cupti]==$toolkit"
+fi
