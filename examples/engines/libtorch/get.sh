@@ -15,8 +15,15 @@ if has_torch "$python" || has_torch "$dir/bin/python3"; then
 fi
 "$python" -m venv "$dir"
 "$dir/bin/pip" install -q --disable-pip-version-check --no-deps torch
+# What torch names for its CUDA libraries is a package of packages. Without dependencies pip does not mind what is left out.
 toolkit=$("$dir/bin/python3" -c 'import importlib.metadata as m
-print(*[line.split("==")[1].split(";")[0].strip() for line in m.requires("torch") if line.startswith("cuda-toolkit")])')
+for line in m.requires("torch"):
+    if line.startswith("cuda-toolkit"): print("cuda-toolkit==" + line.split("==")[1].split(";")[0].strip())')
 if [ -n "$toolkit" ]; then
-    "$dir/bin/pip" install -q --disable-pip-version-check "cuda-toolkit[cudart,cupti]==$toolkit"
+    "$dir/bin/pip" install -q --disable-pip-version-check --no-deps "$toolkit"
+    # shellcheck disable=SC2046 # a list of words
+    "$dir/bin/pip" install -q --disable-pip-version-check --no-deps $("$dir/bin/python3" -c 'import importlib.metadata as m
+for line in m.requires("cuda-toolkit"):
+    if line.rsplit(" ", 1)[-1][1:-1] in ("cudart", "cupti"):
+        print(line.split(";")[0].strip())')
 fi
