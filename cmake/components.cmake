@@ -21,6 +21,16 @@ macro(genrender_component name)
     cmake_parse_arguments(genrender_${name} "" "" "PACKAGES;HEADERS" ${ARGN})
 endmacro()
 
+# genrender_adapter(NAME PACKAGES packages HEADERS headers)
+#   A component that lets an engine's own tensors through: genrender::NAME, whose headers lie in the room `adapters`, the
+#   first of them being its umbrella, which nothing else includes. Its packages are the engine's and found by whoever uses
+#   it: they are neither looked for here nor by find_package(genrender), and linked where the user's project has their
+#   targets.
+macro(genrender_adapter name)
+    list(APPEND genrender_adapters ${name})
+    cmake_parse_arguments(genrender_${name} "" "" "PACKAGES;HEADERS" ${ARGN})
+endmacro()
+
 genrender_package(Eigen3 TARGET Eigen3::Eigen INCLUDES "Eigen/" LEAST 3.4 PKG_CONFIG eigen3)
 genrender_package(xtensor TARGET xtensor INCLUDES "(xtensor|xtl|xsimd)/" PKG_CONFIG xtensor)
 genrender_package(nanoflann TARGET nanoflann::nanoflann INCLUDES "nanoflann[.]hpp" PKG_CONFIG nanoflann)
@@ -29,7 +39,10 @@ genrender_package(glm TARGET glm::glm INCLUDES "glm/" PKG_CONFIG glm)
 genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nlohmann/" PKG_CONFIG nlohmann_json)
 genrender_package(utf8proc MODULE TARGET utf8proc::utf8proc INCLUDES "utf8proc[.]h" PKG_CONFIG libutf8proc)
 
+genrender_package(Torch TARGET torch INCLUDES "(ATen|c10|torch)/")
+
 set(genrender_components "")
+set(genrender_adapters "")
 genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     genrender.hpp
     version.hpp
@@ -312,3 +325,10 @@ genrender_component(c HEADERS
     c/engine.h
     c/engine_call.hpp
     c/engine_denoiser.hpp)
+
+genrender_adapter(torch PACKAGES Torch HEADERS
+    adapters/torch.hpp
+    adapters/torch_plans.hpp)
+
+genrender_adapter(cuda HEADERS
+    adapters/cuda/mix_rows.cuh)

@@ -23,6 +23,11 @@ sh cmake/quickstart.sh WHAT
             NumPy and ONNX Runtime too where python3, or the Python that GENRENDER_PEER_PYTHON names, has them;
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
             earlier run, with --no-peers without the programs of others (benchmarks/README.md)
+  engines   programs of other engines with this library in them, each of examples/engines/ that is to be had: fetches the
+            engines into build/engines, compares their frames and prints one table, and what was skipped and why;
+            LibTorch is that of the Python that GENRENDER_PEER_PYTHON names, where it has it
+  gpu       on a machine with an NVIDIA GPU, in five minutes: the fused kernel of eq. 6 against the host's, its speed
+            against a copy's, and a whole run of LibTorch on the GPU against the processor's
   docs      the reference of every public name, from the comments above them (build/docs/html/index.html)
   packages  install the Debian packages that all of these need, and do no more
 
@@ -38,6 +43,8 @@ bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev li
     libbenchmark-dev libcli11-dev nlohmann-json3-dev libutf8proc-dev"
 # What its tests need besides.
 test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels valgrind"
+engine_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
+    nlohmann-json3-dev libutf8proc-dev doctest-dev python3-venv"
 # What reads the sources without compiling them. Another clang-format would break other lines.
 docs_packages="cmake doxygen"
 slow_check_packages="$test_packages $docs_packages clang-format-14 clang-tidy"
@@ -198,6 +205,46 @@ bench() {
     ls build/bench/benchmarks.*
 }
 
+# Engines are fetched into build/engines, each by a script of its own; one that is not to be had is skipped.
+engines() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $engine_packages
+    for script in examples/engines/*/get.sh; do
+        engine=$(basename "$(dirname "$script")")
+        say "Fetching $engine"
+        sh "$script" "build/engines/$engine" || say "$engine is not to be had"
+    done
+    say "Building and running the clients"
+    cmake -D BUILD=build/engines/clients -P examples/engines/table.cmake
+}
+
+gpu() {
+    if ! nvidia-smi -L 2>/dev/null | grep -q '^GPU'; then
+        say "There is no NVIDIA GPU here. Skipped: the kernel of eq. 6 against the host's and its speed; a whole run on the GPU"
+        return
+    fi
+    nvcc=$(command -v nvcc || echo /usr/local/cuda/bin/nvcc)
+    if [ ! -x "$nvcc" ]; then
+        stop "nvcc is not found, neither in PATH nor in /usr/local/cuda/bin: install a CUDA toolkit, which compiles the kernel."
+    fi
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $engine_packages
+    mkdir -p build/engines
+    say "The kernel of eq. 6"
+    "$nvcc" -std=c++20 -O2 -arch=native -I include -o build/engines/mix_rows_on_device \
+        examples/engines/gpu/mix_rows_on_device.cu
+    build/engines/mix_rows_on_device
+    python=${GENRENDER_PEER_PYTHON:-python3}
+    if ! "$python" -c 'import torch; assert torch.cuda.is_available()' 2>/dev/null; then
+        say "$python has no PyTorch that sees the GPU (GENRENDER_PEER_PYTHON names another). Skipped: a whole run on the GPU"
+        return
+    fi
+    say "A whole run of LibTorch on the GPU, against the processor's"
+    # Convolutions of 10 bits, cuDNN's usual ones, are further from the processor's than the bound.
+    NVIDIA_TF32_OVERRIDE=0 GENRENDER_ENGINE_DEVICE=cuda cmake -D BUILD=build/engines/clients_gpu -D ENGINES=libtorch -D "PYTHON=$python" \
+        -D OPTIONS=-DGENRENDER_TORCH_CUDA=ON -P examples/engines/table.cmake
+}
+
 docs() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $docs_packages
@@ -220,6 +267,8 @@ case ${1-} in
         shift
         bench "$@"
         ;;
+    engines) engines ;;
+    gpu) gpu ;;
     docs) docs ;;
     packages) # shellcheck disable=SC2086 # a list of words
         install_packages $slow_check_packages $evaluate_packages ;;

@@ -56,7 +56,7 @@ foreach(page IN LISTS pages)
 endforeach()
 
 set(regions "")
-file(GLOB sources RELATIVE ${ROOT} ${ROOT}/examples/*.cpp ${ROOT}/examples/support/*.hpp)
+file(GLOB sources RELATIVE ${ROOT} ${ROOT}/examples/*.cpp ${ROOT}/examples/support/*.hpp ${ROOT}/examples/engines/*/*.[ch]pp)
 file(GLOB_RECURSE tests RELATIVE ${ROOT} ${ROOT}/tests/*.test.cpp ${ROOT}/tests/package/toy/*.cpp)
 foreach(source IN LISTS sources tests)
     file(READ ${ROOT}/${source} text)

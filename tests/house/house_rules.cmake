@@ -9,10 +9,15 @@ cmake_minimum_required(VERSION 3.25)
 set(core_rooms core maps correspondence noise attention sampling keyframes blending injection normalization pipeline
     baselines testing)
 set(genrender_components "")
+set(genrender_adapters "")
 include(${ROOT}/cmake/components.cmake)
 set(component_rooms ${genrender_components})
 list(REMOVE_ITEM component_rooms core)
 set(rooms ${core_rooms} ${component_rooms})
+# The room `adapters` is the last: every adapter is a component of headers in it, and no other includes them.
+if(genrender_adapters)
+    list(APPEND rooms adapters)
+endif()
 # What only one header may include, as `<expression> <the header>`.
 set(doors
     "xtensor/|xtl/|xsimd/" core/tensor.hpp
@@ -46,6 +51,9 @@ foreach(component IN LISTS genrender_components)
     set(includes_of_${component} "")
 endforeach()
 list(REMOVE_ITEM headers ${umbrellas})
+foreach(adapter IN LISTS genrender_adapters)
+    set(includes_of_${adapter} "")
+endforeach()
 
 # -- every source ------------------------------------------------------------------------------------------------------
 file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/include/*.hpp ${ROOT}/include/*.h
@@ -105,6 +113,12 @@ foreach(header IN LISTS headers)
                 list(FIND rooms ${candidate} rank)
             endif()
         endforeach()
+    elseif(room STREQUAL "adapters")
+        foreach(candidate IN LISTS genrender_adapters)
+            if(header IN_LIST genrender_${candidate}_HEADERS)
+                set(component ${candidate})
+            endif()
+        endforeach()
     endif()
     # What a model may have besides has a name, a table and a row in the list of customisation points.
     if(text MATCHES "if constexpr \\(requires")
@@ -144,6 +158,11 @@ foreach(header IN LISTS headers)
                 violation("${header}: includes downstream, from ${included_room}")
             elseif(NOT component STREQUAL included_room AND included_room IN_LIST component_rooms)
                 violation("${header}: includes ${included_room}, another component")
+            elseif(included_room STREQUAL "adapters")
+                string(REGEX REPLACE "^.*<genrender/|>" "" included "${include}")
+                if(NOT included IN_LIST genrender_${component}_HEADERS)
+                    violation("${header}: includes ${included}, of another adapter")
+                endif()
             endif()
         elseif(include MATCHES "\"")
             violation("${header}: includes with quotes instead of <genrender/room/noun.hpp>")
@@ -220,6 +239,9 @@ foreach(component IN LISTS genrender_components)
         endif()
     endforeach()
 
+endforeach()
+
+foreach(component IN LISTS genrender_components genrender_adapters)
     # It declares the packages that its headers include, and no others. A component has those of the core, too.
     foreach(package IN LISTS genrender_${component}_PACKAGES)
         if(NOT includes_of_${component} MATCHES "<${genrender_${package}_INCLUDES}")

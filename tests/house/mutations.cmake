@@ -20,7 +20,7 @@ string(REPLACE "[GR eq. 4]" "[GR eq. 1, GR eq. 2, GR eq. 3, GR eq. 4, GR eq. 5, 
 string(APPEND readme "\n```cpp\nauto a = b[0];\n```\n\n[Pages](docs/README.md), [an option](docs/program.md#the-options-all).\n\n\
 | room | holds |\n|---|---|\n")
 foreach(room IN ITEMS core maps correspondence noise attention sampling keyframes blending injection normalization pipeline
-    baselines testing scene reference)
+    baselines testing scene reference adapters)
     string(APPEND readme "| `${room}` | [f; g) |\n")
 endforeach()
 string(APPEND test "}\n")
@@ -41,6 +41,9 @@ function(write_house)
 #include <genrender/scene/mesh.hpp>\n#include <genrender/testing/thing_laws.hpp>\n${end}")
     file(WRITE ${COPY}/include/genrender/testing/thing_laws.hpp "// SPDX-License-Identifier: MIT\n// Laws.\n${begin}\
 #include <genrender/blending/thing.hpp>\n${end}")
+    file(WRITE ${COPY}/include/genrender/adapters/engine.hpp "// SPDX-License-Identifier: MIT\n// Tensors.\n${begin}\
+#include <text/text.hpp>\n${end}")
+    file(WRITE ${COPY}/include/genrender/adapters/other.hpp "// SPDX-License-Identifier: MIT\n// Tensors.\n${begin}${end}")
     file(WRITE ${COPY}/include/genrender/blending/thing.hpp "${header}")
     file(WRITE ${COPY}/include/genrender/genrender.hpp "// SPDX-License-Identifier: MIT\n// All.\n\
 #include <genrender/core/index.hpp>\n#include <genrender/blending/thing.hpp>\n")
@@ -55,15 +58,17 @@ genrender_component(core PACKAGES fast HEADERS genrender.hpp core/index.hpp blen
     testing/thing_laws.hpp)
 genrender_component(scene HEADERS scene.hpp scene/mesh.hpp scene/mesh.inl testing/mesh_laws.hpp)
 genrender_component(reference PACKAGES text HEADERS reference.hpp reference/network.hpp)
+genrender_adapter(engine PACKAGES text HEADERS adapters/engine.hpp)
+genrender_adapter(other HEADERS adapters/other.hpp)
 ")
     file(WRITE ${COPY}/tests/CMakeLists.txt "genrender_test_room(core index)\ngenrender_test_room(reference network)\n\
 genrender_test_room(scene mesh)\ngenrender_test_room(blending\n    thing)\n\
-genrender_test_room(testing thing_laws)\ngenrender_test_room(testing mesh_laws NAME others)\n")
+genrender_test_room(adapters engine other)\ngenrender_test_room(testing thing_laws)\ngenrender_test_room(testing mesh_laws NAME others)\n")
     file(WRITE ${COPY}/benchmarks/CMakeLists.txt "# Benchmarks\ngenrender_benchmark(blending thing)\n")
     file(WRITE ${COPY}/benchmarks/blending/thing.bench.cpp "// SPDX-License-Identifier: MIT\n// Its speed.\n")
     file(WRITE ${COPY}/examples/CMakeLists.txt
         "# Examples\ngenrender_example(story)\ngenrender_example_test(\"a story\" story)\n")
-    foreach(name IN ITEMS core/index scene/mesh reference/network testing/mesh_laws testing/thing_laws)
+    foreach(name IN ITEMS core/index scene/mesh reference/network testing/mesh_laws testing/thing_laws adapters/engine adapters/other)
         file(WRITE ${COPY}/tests/${name}.test.cpp "// SPDX-License-Identifier: MIT\n// Its test.\n\
 #include <genrender/${name}.hpp>\nTEST_SUITE(\"${name}\") {\n    TEST_CASE(\"holds\") {}\n}\n")
     endforeach()
@@ -133,6 +138,11 @@ mutate(${thing} "" "#include <genrender/injection/x.hpp>\n" "includes downstream
 mutate(${thing} "" "#include <genrender/genrender.hpp>\n" "includes the umbrella genrender.hpp")
 mutate(${thing} "" "#include <genrender/scene/mesh.hpp>\n" "thing.hpp: includes downstream, from scene")
 mutate(${network} "" "#include <genrender/scene/mesh.hpp>\n" "network.hpp: includes scene, another component")
+mutate(${network} "" "#include <genrender/adapters/engine.hpp>\n" "network.hpp: includes downstream, from adapters")
+mutate(include/genrender/adapters/other.hpp "" "#include <genrender/adapters/engine.hpp>\n"
+    "other.hpp: includes adapters/engine.hpp, of another adapter")
+mutate(include/genrender/adapters/other.hpp "" "#include <text/text.hpp>\n" "other: .*<text/text.hpp>, of a package that it does not")
+mutate(${components} "HEADERS adapters/engine.hpp" "HEADERS" "adapters/engine.hpp: is not among the headers of core")
 mutate(${thing} "${end}" "if constexpr (requires { a; })\n${end}" "thing.hpp: asks for an optional capability by an unnamed")
 mutate(${thing} "${end}" "\nconcept thinglike = true;\n${end}" "thing.hpp: docs/customisation_points.md has no row for .*thinglike")
 mutate(${thing} "${end}" "\nconcept listed =\n    true;\n${end}" nothing)

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// One run for engines of every kind: the reference denoiser's folder, maps and settings, and the row of the table that an
+// engine's frames make beside those of the library's own network.
+#pragma once
+
+#include <genrender/maps/uv_maps.hpp>
+#include <genrender/pipeline/render.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+#include <genrender/reference/network_conditioning.hpp>
+#include <genrender/reference/unet_config.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace genrender::examples {
+
+/// A tensor of a file, row-major.
+struct named_tensor {
+    std::vector<std::size_t> shape;
+    std::vector<float> values;
+};
+
+using named_tensors = std::map<std::string, named_tensor>; ///< of a file
+
+/// What a run is given: the architecture and all tensors of both networks, tokens of the prompts and the hint of every
+/// frame, maps and settings.
+struct engine_case {
+    reference::unet_config config;
+    named_tensors unet;
+    named_tensors controlnet;
+    reference::network_conditioning<float> conditioning;
+    uv_maps UV;
+    render_settings<float> settings;
+};
+
+/// Renders 8 frames of 64 and of 128 pixels by `run` and by the library's own network, both told the same, on one thread, and
+/// prints the line
+///
+///     engine | way in | - | - | greatest difference | run s against the reference network | library outside the denoiser
+///
+/// where `-` are lines and seconds of compiling, which table.cmake knows, and run s are of the processor's time. The difference is a share of the range of the
+/// reference's latents, the greatest of both sizes. Returns 0; 1 if it is above `bound`, if an engine without injection
+/// would pass too, or with a sentence if something throws.
+int compare_engine(std::string_view engine, std::string_view way_in, double bound,
+                   std::function<render_result<float>(engine_case const&)> const& run);
+
+} // namespace genrender::examples
