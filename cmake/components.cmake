@@ -317,3 +317,9 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
 genrender_adapter(torch PACKAGES Torch HEADERS
     adapters/torch.hpp
     adapters/torch_plans.hpp)
+genrender_adapter(eigen HEADERS
+    adapters/eigen.hpp)
+genrender_adapter(mdspan HEADERS
+    adapters/mdspan.hpp)
+genrender_adapter(xtensor HEADERS
+    adapters/xtensor.hpp)
