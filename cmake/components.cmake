@@ -321,5 +321,5 @@ genrender_adapter(eigen HEADERS
     adapters/eigen.hpp)
 genrender_adapter(mdspan HEADERS
     adapters/mdspan.hpp)
-genrender_adapter(xtensor HEADERS
+genrender_adapter(xtensor PACKAGES xtensor HEADERS
     adapters/xtensor.hpp)

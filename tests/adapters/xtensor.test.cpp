@@ -37,7 +37,6 @@ TEST_SUITE("adapters/xtensor") {
         x += 100.0f;
         CHECK(view(1, 2, 3) == 100 + 1 + 1 + 32 + 9);
         CHECK(memory[0] == 0);
-        CHECK(view_of<3>(x).strides() == view.strides());
     }
 
     TEST_CASE("an xtensor of a view computes with its elements alone") {
@@ -48,7 +47,7 @@ TEST_SUITE("adapters/xtensor") {
         CHECK(sum(0, 2) == 1);
         CHECK(sum(1, 2) == 4);
         strided_view<float, 2> const backward(memory.data() + 5, {2, 3}, {-3, -1});
-        CHECK_THROWS_WITH_AS(to_xtensor(backward), doctest::Contains("view.stride"), value_error);
+        CHECK(xt::xtensor<float, 2>(to_xtensor(backward)) == xt::xtensor<float, 2>{{6, 5, 4}, {3, 2, 1}});
         strided_view<float, 2> const empty(nullptr, {0, 3});
         CHECK(to_xtensor(empty).size() == 0);
     }

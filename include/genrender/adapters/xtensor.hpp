@@ -8,33 +8,42 @@
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/tensor.hpp>
 
+#if __has_include(<xtensor/containers/xadapt.hpp>)
+#include <xtensor/containers/xadapt.hpp>
+#include <xtensor/views/xstrided_view.hpp>
+#else
+#include <xtensor/xadapt.hpp>
+#include <xtensor/xstrided_view.hpp>
+#endif
+
+#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <memory>
+#include <cstdlib>
 #include <type_traits>
 #include <utility>
 
 namespace genrender::adapters {
 
-/// An xtensor expression over the memory of a view with any strides that are not negative.
+/// A view as an xtensor expression, which reads it and, unless T is const, writes it; strides are of any sign. Copies
+/// nothing; the memory must outlive it.
 template <class T, std::size_t Rank>
-using xtensor_map = xt::xtensor_adaptor<xt::xbuffer_adaptor<T*, xt::no_ownership, std::allocator<std::remove_const_t<T>>>,
-                                        Rank, xt::layout_type::dynamic>;
-
-/// A view as an xtensor expression, which reads it and, unless T is const, writes it; copies nothing. Throws value_error
-/// if a stride along several elements is negative: xtensor counts from the least address.
-template <class T, std::size_t Rank>
-xtensor_map<T, Rank> to_xtensor(strided_view<T, Rank> const& view) {
-    typename xtensor_map<T, Rank>::shape_type shape{};
-    typename xtensor_map<T, Rank>::strides_type strides{};
-    for (std::size_t axis = 0; axis < Rank; ++axis) {
-        shape[axis] = view.extent(axis);
+auto to_xtensor(strided_view<T, Rank> const& view) {
+    std::array<std::size_t, Rank> shape = view.extents();
+    std::array<std::ptrdiff_t, Rank> strides{};
+    std::ptrdiff_t first = 0; // the least address, and how many elements there are from it to the greatest
+    std::ptrdiff_t count = view.size() > 0 ? 1 : 0;
+    for (std::size_t axis = 0; axis < Rank && view.size() > 0; ++axis) {
         // xtensor repeats the one element of an axis that others are longer along.
         strides[axis] = view.extent(axis) > 1 ? view.stride(axis) : 0;
-        require_value(strides[axis] >= 0, "to_xtensor", "view.stride", strides[axis], "at least 0");
+        auto const way = static_cast<std::ptrdiff_t>(view.extent(axis) - 1) * strides[axis];
+        first += std::min<std::ptrdiff_t>(way, 0);
+        count += std::abs(way);
     }
-    typename xtensor_map<T, Rank>::storage_type memory(view.data(), view.size());
-    return xtensor_map<T, Rank>(std::move(memory), shape, strides);
+    auto const elements = static_cast<std::size_t>(count);
+    return xt::strided_view(
+        xt::adapt(view.data() + first, elements, xt::no_ownership(), std::array<std::size_t, 1>{elements}),
+        std::move(shape), std::move(strides), static_cast<std::size_t>(-first), xt::layout_type::dynamic);
 }
 
 /// The view of `Rank` axes of an xtensor expression that lies in memory: an array, an adaptor or a slice of these. Copies
