@@ -89,7 +89,7 @@ private:
         adapters::ggml_fixed_tensors weights{20};
         std::map<layer_weights const*, ggml_tensor*> tensor_of;
         std::optional<adapters::ggml_feature_io> io;
-        std::map<std::tuple<adapters::ggml_pass, std::size_t, std::uint32_t>, built_graph> graphs;
+        std::map<std::tuple<graph_pass, std::size_t, std::uint32_t>, built_graph> graphs;
 
         engine() {
             ggml_backend_cpu_set_n_threads(backend.get(), 1);
@@ -106,7 +106,7 @@ private:
             }
         }
 
-        built_graph& graph(adapters::ggml_pass pass, std::size_t frames, std::uint32_t prompt) {
+        built_graph& graph(graph_pass pass, std::size_t frames, std::uint32_t prompt) {
             auto& g = graphs[{pass, frames, prompt}];
             if (g.graph != nullptr) {
                 return g;

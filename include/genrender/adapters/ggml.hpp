@@ -6,14 +6,13 @@
 
 #include <genrender/adapters/ggml_memory.hpp>
 #include <genrender/attention/attention_site.hpp>
-#include <genrender/blending/padded_rows.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/injection/feature_io.hpp>
+#include <genrender/injection/graph_pass.hpp>
 #include <genrender/sampling/run_shapes.hpp>
 
 #include <ggml.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -24,23 +23,16 @@
 
 namespace genrender::adapters {
 
-/// What a graph does at the places that take part.
-enum class ggml_pass : std::uint8_t {
-    plain,    ///< eq. 1: every frame is left to itself
-    keyframe, ///< eq. 3, and features are recorded
-    injected  ///< eqs. 5 and 6 with what was recorded
-};
-
 /// One self-attention module of a graph under construction: what goes around the engine's own projections and attention.
 /// Features are tensors of ne = {channels, tokens, frames}. At a place that takes no part, and in a plain pass, every
 /// member gives back what it is given.
 class ggml_site {
 public:
     /// Of a pass for so many frames. `bank` and `plan` outlive the graph, null where the module is left plain.
-    ggml_site(ggml_pass pass, run_shapes const& shapes, ggml_bank const* bank, ggml_plan const* plan)
-        : is_keyframe_(pass == ggml_pass::keyframe && bank != nullptr),
-          joins_(pass == ggml_pass::injected && bank != nullptr && shapes.joins_keyframes),
-          mixes_(pass == ggml_pass::injected && bank != nullptr && shapes.mixes_rows),
+    ggml_site(graph_pass pass, run_shapes const& shapes, ggml_bank const* bank, ggml_plan const* plan)
+        : is_keyframe_(pass == graph_pass::keyframe && bank != nullptr),
+          joins_(pass == graph_pass::injected && bank != nullptr && shapes.joins_keyframes),
+          mixes_(pass == graph_pass::injected && bank != nullptr && shapes.mixes_rows),
           attends_to_stack_(is_keyframe_ && shapes.attends_to_stack), bank_(bank), plan_(plan) {}
 
     /// The tokens that the module's queries are of: of f, or of its frames in a row (eq. 3: one long row of tokens that
@@ -150,49 +142,33 @@ public:
 
     /// Which pass a processor runs: the one whose graph the call takes.
     template <class Processor>
-    ggml_pass pass_of(Processor const& processor, std::span<frame_index const> frames) const {
-        for (auto const place : shapes_.places) {
-            auto const in = inputs_at<ggml_features, float>(processor, place, frames);
-            if (in.is_recorded || in.attends_to_stack) {
-                return ggml_pass::keyframe;
-            }
-            if (in.f_KF != nullptr || in.F_KF != nullptr) {
-                return ggml_pass::injected;
-            }
-        }
-        return ggml_pass::plain;
+    graph_pass pass_of(Processor const& processor, std::span<frame_index const> frames) const {
+        return graph_pass_of<ggml_features, float>(processor, shapes_, frames);
     }
 
     /// The module at a place, for building a graph of a pass with so many frames.
-    ggml_site site(attention_place place, ggml_pass pass, std::size_t frames) {
+    ggml_site site(attention_place place, graph_pass pass, std::size_t frames) {
         auto const bank = banks_.find(place);
         if (bank == banks_.end()) {
             return ggml_site(pass, shapes_, nullptr, nullptr);
         }
-        auto* const plan = pass == ggml_pass::injected ? &plan_of(place.site, frames) : nullptr;
+        auto* const plan = pass == graph_pass::injected ? &plan_of(place.site, frames) : nullptr;
         return ggml_site(pass, shapes_, &bank->second, plan);
     }
 
     /// Before the graph of a pass and branch runs: uploads what the processor gives its modules. Throws value_error if
     /// that is not what the shapes said, or a row has more entries than shapes.row_width.
     template <class Processor>
-    void write(Processor const& processor, ggml_pass pass, std::uint32_t branch, std::span<frame_index const> frames) {
-        constexpr auto here = "ggml_feature_io::write";
-        auto const is_injected = pass == ggml_pass::injected;
-        for (auto& [place, bank] : banks_) {
+    void write(Processor const& processor, graph_pass pass, std::uint32_t branch, std::span<frame_index const> frames) {
+        for (auto const& [place, bank] : banks_) {
             if (place.branch != branch) {
                 continue;
             }
             auto const in = inputs_at<ggml_features, float>(processor, place, frames);
-            require_value((in.f_KF != nullptr) == (is_injected && shapes_.joins_keyframes) &&
-                              (in.F_KF != nullptr) == (is_injected && shapes_.mixes_rows) &&
-                              in.attends_to_stack == (pass == ggml_pass::keyframe && shapes_.attends_to_stack),
-                          here, "inputs", "of another pass", "what shapes and pass say of every place");
-            require_value(pass != ggml_pass::keyframe || frames.size() == shapes_.keyframes, here, "frames.size()",
-                          frames.size(), "as many keyframes in every step as shapes say");
+            require_inputs(in, pass, shapes_, frames);
             auto const is_ours = (in.f_KF == nullptr || in.f_KF->tensor == bank.f_KF) &&
                                  (in.F_KF == nullptr || in.F_KF->tensor == bank.F_KF);
-            require_value(is_ours, here, "inputs", "features of another memory", "those that `record` handed over");
+            require_value(is_ours, "ggml_feature_io::write", "inputs", "features of another memory", "those that `record` handed over");
             if (in.f_KF != nullptr) {
                 plan_of(place.site, frames.size()).write_mask(in.left_out);
             }

@@ -7,8 +7,8 @@
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/padded_rows.hpp>
 #include <genrender/core/error.hpp>
-#include <genrender/core/plan_key.hpp>
 #include <genrender/core/sparse_rows.hpp>
+#include <genrender/injection/graph_pass.hpp>
 #include <genrender/sampling/run_shapes.hpp>
 
 #include <ggml-backend.h>
@@ -19,11 +19,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <new>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace genrender::adapters {
@@ -147,13 +145,7 @@ public:
 
     /// Uploads the rows of a call, unless they are those of the last one (plan_key). Throws as write_padded_rows does.
     void write_rows(std::span<sparse_rows<float> const> rows, float alpha) {
-        std::vector<plan_key> keys;
-        for (auto const& one : rows) {
-            if (one.key) {
-                keys.push_back(*one.key);
-            }
-        }
-        if (keys.size() == rows.size() && keys == keys_ && alpha == alpha_) {
+        if (last_.holds(rows, alpha)) {
             return;
         }
         auto const count = frames_ * tokens_;
@@ -168,12 +160,10 @@ public:
                                   {shares.data(), extents, strides},
                                   {own_shares.data(), {frames_, tokens_}}},
                                  rows, alpha);
-        keys_.clear(); // until all is there
         ggml_backend_tensor_set(index, indices.data(), 0, ggml_nbytes(index));
         ggml_backend_tensor_set(weights, shares.data(), 0, ggml_nbytes(weights));
         ggml_backend_tensor_set(own, own_shares.data(), 0, ggml_nbytes(own));
-        keys_ = std::move(keys);
-        alpha_ = alpha;
+        last_.set(rows, alpha);
         ++uploads_;
     }
 
@@ -189,13 +179,7 @@ public:
             return;
         }
         std::vector<float> added(frames_ * (1 + keyframes_) * tokens_);
-        for (std::size_t i = 0; i < left_out.size(); ++i) {
-            if (left_out[i]) {
-                auto const first = (i * (1 + keyframes_) + 1 + *left_out[i]) * tokens_;
-                std::fill_n(added.begin() + static_cast<std::ptrdiff_t>(first), tokens_,
-                            -std::numeric_limits<float>::infinity());
-            }
-        }
+        write_left_out<float>({added.data(), {frames_, (1 + keyframes_) * tokens_}}, left_out, tokens_);
         ggml_backend_tensor_set(mask, added.data(), 0, ggml_nbytes(mask));
         left_out_.assign(left_out.begin(), left_out.end());
     }
@@ -209,8 +193,7 @@ private:
     std::size_t tokens_;
     std::size_t keyframes_;
     std::size_t width_;
-    std::vector<plan_key> keys_;
-    float alpha_ = 0;
+    uploaded_rows<float> last_;
     std::vector<std::optional<std::size_t>> left_out_;
     std::size_t uploads_ = 0;
 };
