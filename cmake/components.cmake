@@ -40,6 +40,8 @@ genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nl
 genrender_package(utf8proc MODULE TARGET utf8proc::utf8proc INCLUDES "utf8proc[.]h" PKG_CONFIG libutf8proc)
 
 genrender_package(Torch TARGET torch INCLUDES "(ATen|c10|torch)/")
+genrender_package(ggml TARGET ggml::ggml INCLUDES "ggml(-[a-z]+)?[.]h")
+genrender_package(OpenVINO TARGET openvino::runtime INCLUDES "openvino/")
 
 set(genrender_components "")
 set(genrender_adapters "")
@@ -146,6 +148,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/row_bound.hpp
     blending/texel_weights.hpp
     injection/feature_io.hpp
+    injection/graph_pass.hpp
     injection/host_attention_call.hpp
     injection/injection_settings.hpp
     injection/injector.hpp
@@ -317,6 +320,12 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
 genrender_adapter(torch PACKAGES Torch HEADERS
     adapters/torch.hpp
     adapters/torch_plans.hpp)
+genrender_adapter(ggml PACKAGES ggml HEADERS
+    adapters/ggml.hpp
+    adapters/ggml_memory.hpp)
+genrender_adapter(openvino PACKAGES OpenVINO HEADERS
+    adapters/openvino.hpp
+    adapters/openvino_memory.hpp)
 genrender_adapter(eigen HEADERS
     adapters/eigen.hpp)
 genrender_adapter(mdspan HEADERS

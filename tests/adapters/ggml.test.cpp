@@ -35,8 +35,8 @@ TEST_SUITE("adapters/ggml") {
         }
 
         template <class Processor>
-        stack<float, 3> operator()(Processor const& processor, attention_place place, std::span<frame_index const> frames,
-                                   stack<float, 3> const& f) {
+        stack<float, 3> operator()(Processor const& processor, attention_place place,
+                                   std::span<frame_index const> frames, stack<float, 3> const& f) {
             auto const pass = io.pass_of(processor, frames);
             auto& g = graphs[{pass, frames.size()}];
             if (g.graph == nullptr) {

@@ -27,8 +27,7 @@ TEST_SUITE("adapters/mdspan") {
             static constexpr std::size_t static_extent(std::size_t axis) { return axis == 1 ? Columns : any; }
         };
         struct mapping_type {
-            explicit mapping_type(extents_type e) requires(!HasStrides)
-                : extents(e), strides{e.sizes[1], Index{1}} {}
+            explicit mapping_type(extents_type e) requires(!HasStrides) : extents(e), strides{e.sizes[1], Index{1}} {}
             mapping_type(extents_type e, std::array<Index, 2> s) requires HasStrides : extents(e), strides(s) {}
             extents_type extents;
             std::array<Index, 2> strides;

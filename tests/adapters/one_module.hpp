@@ -73,7 +73,8 @@ module_differences compare_module(module_case const& with) {
                                 std::uint64_t seed) {
         auto const f = random_stack<float, 3>({stack.size(), tokens, channels}, seed);
         auto copy_of_f = f;
-        host_attention_call<float, matrix_module<float>> call(place, stack, host_features<float>(copy_of_f.view()), module);
+        host_attention_call<float, matrix_module<float>> call(place, stack, host_features<float>(copy_of_f.view()),
+                                                              module);
         auto const expected = library(call);
         auto const F = engine(engines, place, stack, f);
         double greatest = 0;

@@ -29,8 +29,8 @@ TEST_SUITE("adapters/openvino") {
             : module(m), io(shapes, sites) {}
 
         template <class Processor>
-        stack<float, 3> operator()(Processor const& processor, attention_place place, std::span<frame_index const> frames,
-                                   stack<float, 3> const& f) {
+        stack<float, 3> operator()(Processor const& processor, attention_place place,
+                                   std::span<frame_index const> frames, stack<float, 3> const& f) {
             auto const pass = io.pass_of(processor, frames);
             auto& request = requests[{pass, frames.size()}];
             if (!request) {
@@ -49,8 +49,8 @@ TEST_SUITE("adapters/openvino") {
 
         ov::InferRequest build(attention_place place, graph_pass pass, stack<float, 3> const& f) {
             adapters::openvino_ports ports;
-            auto const in = std::make_shared<ov::opset13::Parameter>(
-                ov::element::f32, ov::Shape{f.extent(0), f.extent(1), f.extent(2)});
+            auto const in = std::make_shared<ov::opset13::Parameter>(ov::element::f32,
+                                                                     ov::Shape{f.extent(0), f.extent(1), f.extent(2)});
             in->output(0).set_names({"f"});
             auto const site = io.site(place, pass, f.extent(0), ports);
             auto const queries = site.queries(in);
@@ -88,8 +88,8 @@ TEST_SUITE("adapters/openvino") {
             return std::make_shared<ov::opset13::Reshape>(x, numbers(shape), false);
         }
         static value projected(stack<float, 2> const& W, value const& x) {
-            auto const matrix =
-                std::make_shared<ov::opset13::Constant>(ov::element::f32, ov::Shape{W.extent(0), W.extent(1)}, W.data());
+            auto const matrix = std::make_shared<ov::opset13::Constant>(ov::element::f32,
+                                                                        ov::Shape{W.extent(0), W.extent(1)}, W.data());
             return std::make_shared<ov::opset13::MatMul>(x, matrix, false, true);
         }
         value by_head(value const& x) const {

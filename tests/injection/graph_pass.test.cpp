@@ -33,7 +33,8 @@ TEST_SUITE("injection/graph_pass") {
 
     template <class Processor>
     void check_inputs(Processor const& processor, graph_pass pass, run_shapes const& shapes) {
-        require_inputs(inputs_at<graph_handle, float>(processor, graph_place, graph_frames), pass, shapes, graph_frames);
+        require_inputs(inputs_at<graph_handle, float>(processor, graph_place, graph_frames), pass, shapes,
+                       graph_frames);
     }
 
     } // namespace

@@ -115,12 +115,15 @@ private:
             g.ctx.reset(ggml_init({nodes * ggml_tensor_overhead() + ggml_graph_overhead(), nullptr, true}));
             g.graph = ggml_new_graph(g.ctx.get());
             g.z = ggml_new_tensor_3d(g.ctx.get(), GGML_TYPE_F32, std::int64_t{small_unet::latent_channels},
-                                     static_cast<std::int64_t>(small_unet::grid.size()), static_cast<std::int64_t>(frames));
+                                     static_cast<std::int64_t>(small_unet::grid.size()),
+                                     static_cast<std::int64_t>(frames));
             g.shift = ggml_new_tensor_1d(g.ctx.get(), GGML_TYPE_F32, std::int64_t{small_unet::channels});
             ggml_set_input(g.z);
             ggml_set_input(g.shift);
             ggml_operations ops{g.ctx.get(), g.graph, [this](layer_weights const& w) { return tensor_of.at(&w); },
-                                [&](site_index s) { return io->site({s, prompt}, pass, frames); }};
+                                [&](site_index s) {
+                                    return io->site({s, prompt}, pass, frames);
+                                }};
             g.v = net(ops, g.z, g.shift);
             adapters::keep_output(g.v);
             ggml_build_forward_expand(g.graph, g.v);

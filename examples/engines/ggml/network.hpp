@@ -45,8 +45,8 @@ struct ggml_operations {
         auto const rows = static_cast<std::int64_t>(from.height) * x->ne[2];
         auto* const wide =
             ggml_repeat_4d(ctx, ggml_reshape_4d(ctx, x, channels, 1, width, rows), channels, 2, width, rows);
-        auto* const tall = ggml_repeat_4d(ctx, ggml_reshape_4d(ctx, wide, channels, 2 * width, 1, rows), channels,
-                                          2 * width, 2, rows);
+        auto* const tall =
+            ggml_repeat_4d(ctx, ggml_reshape_4d(ctx, wide, channels, 2 * width, 1, rows), channels, 2 * width, 2, rows);
         return ggml_reshape_3d(ctx, tall, channels, 4 * x->ne[1], x->ne[2]);
     }
 
@@ -60,7 +60,8 @@ struct ggml_operations {
         if (module.mask() != nullptr) {
             products = add(products, module.mask());
         }
-        auto* const heads = ggml_mul_mat(ctx, V, ggml_soft_max(ctx, products)); // {channels of a head, tokens, heads, frames}
+        auto* const heads =
+            ggml_mul_mat(ctx, V, ggml_soft_max(ctx, products)); // {channels of a head, tokens, heads, frames}
         auto* const F = ggml_cont(ctx, ggml_permute(ctx, heads, 0, 2, 1, 3));
         return module.output(ctx, graph, f, ggml_reshape_3d(ctx, F, f->ne[0], F->ne[2], F->ne[3]));
     }

@@ -28,8 +28,8 @@ struct openvino_operations {
         return ov::opset13::Constant::create(ov::element::i64, {n.size()}, n);
     }
     static value reshaped(value const& x, ov::Shape const& shape) {
-        return make<ov::opset13::Reshape>(
-            x, ov::opset13::Constant::create(ov::element::i64, {shape.size()}, shape), false);
+        return make<ov::opset13::Reshape>(x, ov::opset13::Constant::create(ov::element::i64, {shape.size()}, shape),
+                                          false);
     }
 
     value linear(layer_weights const& w, value const& x) const {

@@ -53,7 +53,8 @@ public:
             request.infer();
             e.io->record(processor, prompt, frames);
             ov::Tensor const out = request.get_tensor("v");
-            std::transform(v.begin(), v.end(), out.data<float>(), v.begin(), [](float a, float b) { return a + b / 2; });
+            std::transform(v.begin(), v.end(), out.data<float>(), v.begin(),
+                           [](float a, float b) { return a + b / 2; });
         }
         to_clean(x0, prediction::velocity, z, channels_first(v.data(), frames.size()), sigma);
     }
@@ -92,9 +93,9 @@ private:
             parameters.insert(parameters.end(), ports.parameters().begin(), ports.parameters().end());
             ov::ResultVector results{std::make_shared<ov::opset13::Result>(v)};
             results.insert(results.end(), ports.results().begin(), ports.results().end());
-            auto compiled = core.compile_model(std::make_shared<ov::Model>(results, parameters), "CPU",
-                                               ov::hint::inference_precision(ov::element::f32),
-                                               ov::inference_num_threads(1));
+            auto compiled =
+                core.compile_model(std::make_shared<ov::Model>(results, parameters), "CPU",
+                                   ov::hint::inference_precision(ov::element::f32), ov::inference_num_threads(1));
             kept = compiled.create_infer_request();
             ports.bind(kept);
             return kept;

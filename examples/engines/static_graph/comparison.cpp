@@ -120,7 +120,8 @@ struct called_back {
                     std::span<frame_index const> frames, Processor& processor) const {
         auto const c_in = scalings_of(prediction::velocity, sigma).c_in;
         tensor3 tokens({frames.size(), small_unet::grid.size(), small_unet::latent_channels});
-        latents<float> v = xt::zeros<float>(std::array<std::size_t, 4>{z.extent(0), z.extent(1), z.extent(2), z.extent(3)});
+        latents<float> v =
+            xt::zeros<float>(std::array<std::size_t, 4>{z.extent(0), z.extent(1), z.extent(2), z.extent(3)});
         for (std::uint32_t prompt = 0; prompt < branches(); ++prompt) {
             auto const attend = [&](site_index site, small_unet::block const& block, tensor3& f) {
                 block_projections const module{block};
@@ -195,7 +196,8 @@ int compare_graphs(char const* engine, std::function<graph_frames(graph_case con
         std::printf("%s | feature I/O | - | - | %.1e | %.2f / %.2f | %.1f %%\n", engine, apart, seconds,
                     reference_seconds, share);
         if (!(apart <= 1e-5 && effect >= 1e-2)) {
-            std::fprintf(stderr, "latents differ by %g of their range, expected at most 1e-5; injection moves them by %g\n",
+            std::fprintf(stderr,
+                         "latents differ by %g of their range, expected at most 1e-5; injection moves them by %g\n",
                          apart, effect);
             return 1;
         }

@@ -18,8 +18,9 @@ namespace genrender::adapters {
 
 /// A matrix over the memory of a view [rows, columns] with any strides.
 template <class T>
-using eigen_matrix_map = Eigen::Map<std::conditional_t<std::is_const_v<T>, matrix<std::remove_const_t<T>> const, matrix<T>>,
-                                    Eigen::Unaligned, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
+using eigen_matrix_map =
+    Eigen::Map<std::conditional_t<std::is_const_v<T>, matrix<std::remove_const_t<T>> const, matrix<T>>,
+               Eigen::Unaligned, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
 
 /// A view [rows, columns] as Eigen's matrix; copies nothing. Throws value_error if a stride is negative, which Eigen's
 /// maps do not have.
@@ -107,7 +108,8 @@ auto to_view(Tensor& tensor) {
         strides[axis] = stride;
         stride *= static_cast<std::ptrdiff_t>(extents[axis]);
     }
-    return genrender::strided_view<std::remove_pointer_t<decltype(tensor.data())>, rank>(tensor.data(), extents, strides);
+    return genrender::strided_view<std::remove_pointer_t<decltype(tensor.data())>, rank>(tensor.data(), extents,
+                                                                                         strides);
 }
 
 } // namespace Eigen

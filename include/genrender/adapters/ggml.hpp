@@ -168,7 +168,8 @@ public:
             require_inputs(in, pass, shapes_, frames);
             auto const is_ours = (in.f_KF == nullptr || in.f_KF->tensor == bank.f_KF) &&
                                  (in.F_KF == nullptr || in.F_KF->tensor == bank.F_KF);
-            require_value(is_ours, "ggml_feature_io::write", "inputs", "features of another memory", "those that `record` handed over");
+            require_value(is_ours, "ggml_feature_io::write", "inputs", "features of another memory",
+                          "those that `record` handed over");
             if (in.f_KF != nullptr) {
                 plan_of(place.site, frames.size()).write_mask(in.left_out);
             }

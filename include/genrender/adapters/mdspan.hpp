@@ -26,7 +26,7 @@ namespace detail {
 /// A span over plain elements: what it is called with is an element itself, not a value that an accessor makes.
 template <class Span>
 concept plain_span = std::same_as<typename Span::reference, typename Span::element_type&> &&
-                     std::same_as<typename Span::data_handle_type, typename Span::element_type*>;
+    std::same_as<typename Span::data_handle_type, typename Span::element_type*>;
 
 /// The greatest number of an index type that a size has.
 template <class Index>
