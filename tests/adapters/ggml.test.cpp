@@ -34,6 +34,7 @@ TEST_SUITE("adapters/ggml") {
             ggml_backend_tensor_set(V, m.W_V.data(), 0, ggml_nbytes(V));
         }
 
+        // docs:begin ggml_call
         template <class Processor>
         stack<float, 3> operator()(Processor const& processor, attention_place place,
                                    std::span<frame_index const> frames, stack<float, 3> const& f) {
@@ -50,6 +51,7 @@ TEST_SUITE("adapters/ggml") {
             ggml_backend_tensor_get(g.F, F.data(), 0, ggml_nbytes(g.F));
             return F;
         }
+        // docs:end
 
         struct built {
             ggml_context_ptr ctx;
@@ -66,6 +68,7 @@ TEST_SUITE("adapters/ggml") {
             g.f = ggml_new_tensor_3d(ctx, GGML_TYPE_F32, static_cast<std::int64_t>(f.extent(2)),
                                      static_cast<std::int64_t>(f.extent(1)), static_cast<std::int64_t>(f.extent(0)));
             ggml_set_input(g.f);
+            // docs:begin ggml_graph
             auto const site = io.site(place, pass, f.extent(0));
             auto* const queries = site.queries(ctx, g.f);
             // Keys are projected of joined tokens, values of keyframes apart and joined then: both are allowed.
@@ -84,6 +87,7 @@ TEST_SUITE("adapters/ggml") {
             auto* const by_token = ggml_cont(ctx, ggml_permute(ctx, heads, 0, 2, 1, 3));
             g.F = site.output(ctx, g.graph, g.f,
                               ggml_reshape_3d(ctx, by_token, g.f->ne[0], by_token->ne[2], by_token->ne[3]));
+            // docs:end
             adapters::keep_output(g.F);
             ggml_build_forward_expand(g.graph, g.F);
             g.memory.reset(ggml_gallocr_new(ggml_backend_get_default_buffer_type(backend.get())));

@@ -28,6 +28,7 @@ TEST_SUITE("adapters/openvino") {
         openvino_module(run_shapes const& shapes, std::span<attention_site const> sites, matrix_module<float> const& m)
             : module(m), io(shapes, sites) {}
 
+        // docs:begin openvino_call
         template <class Processor>
         stack<float, 3> operator()(Processor const& processor, attention_place place,
                                    std::span<frame_index const> frames, stack<float, 3> const& f) {
@@ -46,12 +47,14 @@ TEST_SUITE("adapters/openvino") {
             std::copy_n(out.data<float>(), F.size(), F.data());
             return F;
         }
+        // docs:end
 
         ov::InferRequest build(attention_place place, graph_pass pass, stack<float, 3> const& f) {
             adapters::openvino_ports ports;
             auto const in = std::make_shared<ov::opset13::Parameter>(ov::element::f32,
                                                                      ov::Shape{f.extent(0), f.extent(1), f.extent(2)});
             in->output(0).set_names({"f"});
+            // docs:begin openvino_model
             auto const site = io.site(place, pass, f.extent(0), ports);
             auto const queries = site.queries(in);
             // Keys are projected of joined tokens, values of keyframes apart and joined then: both are allowed.
@@ -78,6 +81,7 @@ TEST_SUITE("adapters/openvino") {
                                                ov::hint::inference_precision(ov::element::f32));
             auto request = compiled.create_infer_request();
             ports.bind(request);
+            // docs:end
             return request;
         }
 

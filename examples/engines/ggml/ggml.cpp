@@ -10,7 +10,7 @@
 #include <ggml-alloc.h>
 #include <ggml-cpu.h>
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -19,7 +19,6 @@
 #include <vector>
 
 namespace genrender::examples {
-
 namespace {
 
 /// A graph that is built once and run often; its allocator's memory lasts from one run to the next, its values do not.
@@ -139,7 +138,6 @@ private:
 static_assert(preparable_denoiser<ggml_denoiser>);
 
 } // namespace
-
 } // namespace genrender::examples
 
 int main() {

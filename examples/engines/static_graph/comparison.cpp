@@ -179,6 +179,7 @@ int compare_graphs(char const* engine, std::function<graph_frames(graph_case con
         given.settings.keyframes.count = 3;
         given.settings.frames_per_call = 3;
         given.settings.window_end = 0.8f;
+        given.settings.injection.keeps_own_copy = false; // takes a mask
         given.settings.noise.seed = 5;
         auto const rendered = [&](render_settings<float> const& settings) {
             return render(called_back{}, to_uv_view(given.UV), {.settings = settings}).z;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 3, 5, 6 as a static graph] OpenVINO behind genrender: nodes for self-attention of a model, and memory they read.
+// OpenVINO behind genrender: nodes of static graphs for self-attention by eqs. 3, 5 and 6, and memory that they read.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
