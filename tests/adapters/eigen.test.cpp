@@ -12,10 +12,11 @@
 #include <vector>
 
 using namespace genrender;
-using adapters::to_eigen;
-using adapters::to_eigen_tensor;
 
 TEST_SUITE("adapters/eigen") {
+    using adapters::to_eigen;
+    using adapters::to_eigen_tensor;
+
     namespace {
 
     std::vector<float> counted(std::size_t count) {

@@ -11,10 +11,11 @@
 #include <vector>
 
 using namespace genrender;
-using adapters::to_mdspan;
-using adapters::to_view;
 
 TEST_SUITE("adapters/mdspan") {
+    using adapters::to_mdspan;
+    using adapters::to_view;
+
     namespace {
 
     /// A span of two axes with the members of std::mdspan that the adapter reads, for compilers that have none; the second

@@ -18,10 +18,11 @@
 #include <vector>
 
 using namespace genrender;
-using adapters::to_xtensor;
-using adapters::view_of;
 
 TEST_SUITE("adapters/xtensor") {
+    using adapters::to_xtensor;
+    using adapters::view_of;
+
     TEST_CASE("an xtensor of a view has its elements, whatever the strides, and writes to them") {
         std::vector<float> memory(60);
         std::iota(memory.begin(), memory.end(), 0.0f);

@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -142,7 +143,7 @@ static_assert(preparable_denoiser<ggml_denoiser>);
 
 int main() {
     using namespace genrender;
-    return examples::compare_graphs("ggml " GENRENDER_GGML_VERSION, [](examples::graph_case const& given) {
+    return examples::compare_graphs(std::string("ggml ") + ggml_version(), [](examples::graph_case const& given) {
         auto run = render(examples::ggml_denoiser{}, to_uv_view(given.UV), {.settings = given.settings});
         return examples::graph_frames{std::move(run.z), std::move(run.report)};
     });

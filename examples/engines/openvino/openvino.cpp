@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -112,8 +113,10 @@ static_assert(preparable_denoiser<openvino_denoiser>);
 
 int main() {
     using namespace genrender;
-    return examples::compare_graphs("OpenVINO " GENRENDER_OPENVINO_VERSION, [](examples::graph_case const& given) {
-        auto run = render(examples::openvino_denoiser{}, to_uv_view(given.UV), {.settings = given.settings});
-        return examples::graph_frames{std::move(run.z), std::move(run.report)};
-    });
+    std::string const version = ov::get_openvino_version().buildNumber;
+    return examples::compare_graphs(
+        std::string("OpenVINO ") + version.substr(0, version.find('-')), [](examples::graph_case const& given) {
+            auto run = render(examples::openvino_denoiser{}, to_uv_view(given.UV), {.settings = given.settings});
+            return examples::graph_frames{std::move(run.z), std::move(run.report)};
+        });
 }

@@ -18,11 +18,9 @@ target_link_libraries(engine_comparison PUBLIC genrender::genrender genrender::s
 
 # The program client_<engine> of <engine>.cpp, which prints a row of the table, and its tests. The last two are the adapter
 # and the engine's own target.
-function(genrender_graph_client engine version adapter target)
+function(genrender_graph_client engine adapter target)
     add_executable(client_${engine} ${engine}.cpp)
     target_link_libraries(client_${engine} PRIVATE engine_comparison ${adapter} ${target})
-    string(TOUPPER ${engine} prefix)
-    target_compile_definitions(client_${engine} PRIVATE GENRENDER_${prefix}_VERSION="${version}")
     add_test(NAME "${engine} client" COMMAND client_${engine})
 
     find_package(doctest CONFIG)
@@ -30,6 +28,7 @@ function(genrender_graph_client engine version adapter target)
         set(tests ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../../../tests)
         add_executable(adapter_tests ${tests}/main.cpp ${tests}/adapters/${engine}.test.cpp
             ${tests}/adapters/${engine}_memory.test.cpp)
+        target_include_directories(adapter_tests PRIVATE ${tests})
         target_link_libraries(adapter_tests PRIVATE ${adapter} ${target} doctest::doctest engine_flags)
         set_target_properties(adapter_tests PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
         add_test(NAME "${engine} adapter" COMMAND adapter_tests)

@@ -172,7 +172,7 @@ double seconds_of(std::function<void()> const& work) {
 
 } // namespace
 
-int compare_graphs(char const* engine, std::function<graph_frames(graph_case const&)> const& run) {
+int compare_graphs(std::string const& engine, std::function<graph_frames(graph_case const&)> const& run) {
     try {
         graph_case given{rasterize(scenes::camera_rotation(7, 0.6f), {64, 64}).uv, {}};
         given.settings.steps = 6;
@@ -194,7 +194,7 @@ int compare_graphs(char const* engine, std::function<graph_frames(graph_case con
         auto const apart = difference(frames.z, reference);
         auto const& report = frames.report;
         auto const share = 100 * report.library_seconds / (report.library_seconds + report.denoiser_seconds);
-        std::printf("%s | feature I/O | - | - | %.1e | %.2f / %.2f | %.1f %%\n", engine, apart, seconds,
+        std::printf("%s | feature I/O | - | - | %.1e | %.2f / %.2f | %.1f %%\n", engine.c_str(), apart, seconds,
                     reference_seconds, share);
         if (!(apart <= 1e-5 && effect >= 1e-2)) {
             std::fprintf(stderr,

@@ -9,6 +9,7 @@
 #include <genrender/pipeline/render_settings.hpp>
 
 #include <functional>
+#include <string>
 
 namespace genrender::examples {
 
@@ -31,6 +32,6 @@ struct graph_frames {
 ///
 /// The difference is a share of the range of the latents. Returns 0; 1 if it is above 1e-5, if an engine without injection
 /// would pass too, or with a sentence if something throws.
-int compare_graphs(char const* engine, std::function<graph_frames(graph_case const&)> const& run);
+int compare_graphs(std::string const& engine, std::function<graph_frames(graph_case const&)> const& run);
 
 } // namespace genrender::examples
