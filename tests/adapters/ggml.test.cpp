@@ -25,6 +25,7 @@ TEST_SUITE("adapters/ggml") {
 
         ggml_module(run_shapes const& shapes, std::span<attention_site const> sites, matrix_module<float> const& m)
             : module(m), io(backend.get(), shapes, sites) {
+            ggml_backend_cpu_set_n_threads(backend.get(), 1);
             for (auto* const W : {&Q, &K, &V}) {
                 *W = weights.add(GGML_TYPE_F32, {m.W_Q.extent(1), m.W_Q.extent(0), 1, 1});
             }

@@ -24,6 +24,7 @@ TEST_SUITE("adapters/mdspan") {
     template <class T, std::size_t Columns, class Index, bool HasStrides>
     struct small_span {
         struct extents_type {
+            explicit extents_type(std::array<Index, 2> e) : sizes(e) {}
             std::array<Index, 2> sizes;
             static constexpr std::size_t static_extent(std::size_t axis) { return axis == 1 ? Columns : any; }
         };
