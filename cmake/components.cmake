@@ -40,6 +40,10 @@ genrender_package(nlohmann_json TARGET nlohmann_json::nlohmann_json INCLUDES "nl
 genrender_package(utf8proc MODULE TARGET utf8proc::utf8proc INCLUDES "utf8proc[.]h" PKG_CONFIG libutf8proc)
 
 genrender_package(Torch TARGET torch INCLUDES "(ATen|c10|torch)/")
+genrender_package(ggml TARGET ggml::ggml INCLUDES "ggml(-[a-z]+)?[.]h")
+genrender_package(OpenMP MODULE TARGET OpenMP::OpenMP_CXX INCLUDES "omp[.]h")
+genrender_package(TBB TARGET TBB::tbb INCLUDES "tbb/")
+genrender_package(OpenVINO TARGET openvino::runtime INCLUDES "openvino/")
 
 set(genrender_components "")
 set(genrender_adapters "")
@@ -150,6 +154,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/texel_weights.hpp
     injection/any_denoiser.hpp
     injection/feature_io.hpp
+    injection/graph_pass.hpp
     injection/host_attention_call.hpp
     injection/injection_settings.hpp
     injection/injector.hpp
@@ -332,3 +337,19 @@ genrender_adapter(torch PACKAGES Torch HEADERS
 
 genrender_adapter(cuda HEADERS
     adapters/cuda/mix_rows.cuh)
+genrender_adapter(ggml PACKAGES ggml HEADERS
+    adapters/ggml.hpp
+    adapters/ggml_memory.hpp)
+genrender_adapter(openvino PACKAGES OpenVINO HEADERS
+    adapters/openvino.hpp
+    adapters/openvino_memory.hpp)
+genrender_adapter(eigen HEADERS
+    adapters/eigen.hpp)
+genrender_adapter(mdspan HEADERS
+    adapters/mdspan.hpp)
+genrender_adapter(xtensor PACKAGES xtensor HEADERS
+    adapters/xtensor.hpp)
+genrender_adapter(openmp PACKAGES OpenMP HEADERS
+    adapters/openmp.hpp)
+genrender_adapter(tbb PACKAGES TBB HEADERS
+    adapters/tbb.hpp)

@@ -106,6 +106,7 @@
 
 #include <genrender/injection/any_denoiser.hpp>
 #include <genrender/injection/feature_io.hpp>
+#include <genrender/injection/graph_pass.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/injection/injection_settings.hpp>
 #include <genrender/injection/injector.hpp>

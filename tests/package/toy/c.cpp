@@ -8,7 +8,7 @@ int main() {
     genrender_engine engine{};
     engine.version = GENRENDER_ENGINE_VERSION + 1;
     try {
-        genrender::engine_denoiser const denoiser(engine);
+        genrender::c::engine_denoiser const denoiser(engine);
     } catch (genrender::value_error const& error) {
         std::cout << error.what() << '\n';
         return 0;
