@@ -2,11 +2,11 @@
 // A parallel loop over OpenMP's threads.
 #pragma once
 
+#include <genrender/core/begin_header.inl>
+
 #ifndef _OPENMP
 #error "genrender/adapters/openmp.hpp: OpenMP is off, expected a compiler that is told to use it (-fopenmp)"
 #endif
-
-#include <genrender/core/begin_header.inl>
 
 #include <atomic>
 #include <cstddef>
