@@ -6,6 +6,7 @@
 
 #include <genrender/baselines/previous_frame_attention.hpp>
 #include <genrender/pipeline/render_settings.hpp>
+#include <genrender/sampling/run_shapes.hpp>
 
 #include <cstddef>
 #include <span>
