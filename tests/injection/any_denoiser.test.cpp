@@ -133,11 +133,12 @@ TEST_SUITE("injection/any_denoiser") {
     }
     TEST_CASE("a static graph that does not hand over features is told of record_features") {
         auto const maps = testing::slanted_maps(4);
-        CHECK_THROWS_WITH_AS(render(static_denoiser{.hands_over = false}, to_uv_view(maps), {.settings = three_steps()}),
-                             "sequence_denoiser: features of keyframes at site decoder.attn1 of branch 0 are missing, "
-                             "expected the denoiser to call record_features(processor, place, f, F) after its graph "
-                             "has run, since inputs_at said is_recorded there",
-                             value_error);
+        CHECK_THROWS_WITH_AS(
+            render(static_denoiser{.hands_over = false}, to_uv_view(maps), {.settings = three_steps()}),
+            "sequence_denoiser: features of keyframes at site decoder.attn1 of branch 0 are missing, "
+            "expected the denoiser to call record_features(processor, place, f, F) after its graph "
+            "has run, since inputs_at said is_recorded there",
+            value_error);
     }
     TEST_CASE("a processor without inputs is refused by a static graph") {
         struct without_inputs {
