@@ -21,6 +21,7 @@ PACKAGES = {
     "scene": {"glm/[>=0.9.9]": "libglm-dev"},
     "inspection": {},
     "evaluation": {},
+    "c": {},
     "reference": {
         "nlohmann_json/[>=3.10 <4]": "nlohmann-json3-dev",
         "utf8proc/[>=2.4 <3]": "libutf8proc-dev",

@@ -45,9 +45,6 @@ public:
     virtual any_features stored(any_features const& x, feature_storage storage) const = 0;
 
 protected:
-    any_attention_call() = default;
-    any_attention_call(any_attention_call const&) = default;
-    any_attention_call& operator=(any_attention_call const&) = default;
     ~any_attention_call() = default;
 };
 

@@ -69,6 +69,7 @@ concept attention_call = std::copyable<typename Call::features_type> && std::flo
 };
 
 // The sentence of a temporary, which static_assert takes as a literal only.
+/// What the compiler says of a call that is a temporary.
 #define GENRENDER_CALL_IS_LVALUE                                                                                       \
     "attention_call: a processor takes an lvalue, my_call call(...); processor(call), since it may keep handles of it"
 

@@ -69,11 +69,16 @@ concept maps_tell_points = !maps_tell_dimensions<Maps> || requires(Maps const& m
 } // namespace detail
 
 // The sentences, which static_assert takes as literals only.
+/// What the compiler says of maps that lack this.
 #define GENRENDER_MAPS_DIMENSIONS "canonical_maps: maps can be copied and have `dimensions`, a constant of 2 or 3"
+/// What the compiler says of maps that lack this.
 #define GENRENDER_MAPS_EXTENTS                                                                                         \
     "canonical_maps: frame_count() is const and returns a number, grid() is const and returns grid_extents"
+/// What the compiler says of maps that lack this.
 #define GENRENDER_MAPS_COVERAGE "canonical_maps: is_covered(frame, pixel) is const and returns bool"
+/// What the compiler says of maps that lack this.
 #define GENRENDER_MAPS_OBJECTS "canonical_maps: object_at(frame, pixel) is const and returns object_index"
+/// What the compiler says of maps that lack this.
 #define GENRENDER_MAPS_POINTS                                                                                          \
     "canonical_maps: point_at(frame, pixel) is const and returns std::array<float, dimensions>"
 

@@ -147,15 +147,22 @@ concept denoiser_keeps_z = denoiser_call_is_right<Phi> || !denoiser_estimates<Ph
 } // namespace detail
 
 // The sentences, which static_assert takes as literals only.
+/// What the compiler says of a denoiser that lacks this.
 #define GENRENDER_DENOISER_TYPES "denoiser: real_type is float or double and features_type is copyable"
+/// What the compiler says of a denoiser that lacks this.
 #define GENRENDER_DENOISER_LATENTS                                                                                     \
     "denoiser: latent_channels() is const and returns a number, latent_grid() is const and returns grid_extents"
+/// What the compiler says of a denoiser that lacks this.
 #define GENRENDER_DENOISER_SITES "denoiser: sites() is const and returns a random access range of attention_site"
+/// What the compiler says of a denoiser that lacks this.
 #define GENRENDER_DENOISER_BRANCHES "denoiser: branches() is const and returns the number of guidance branches"
+/// What the compiler says of a denoiser that lacks this.
 #define GENRENDER_DENOISER_CONST "denoiser: operator()(x0, z, sigma, frames, processor) is const"
+/// What the compiler says of a denoiser that lacks this.
 #define GENRENDER_DENOISER_Z                                                                                           \
     "denoiser: operator()(x0, z, sigma, frames, processor) takes z as strided_view<real_type const, 4>: it is not "    \
     "changed"
+/// What the compiler says of a denoiser that lacks this.
 #define GENRENDER_DENOISER_CALL                                                                                        \
     "denoiser: operator()(x0, z, sigma, frames, processor) takes x0 as strided_view<real_type, 4>, z as "              \
     "strided_view<real_type const, 4>, sigma as real_type, frames as std::span<frame_index const>, and is a template " \

@@ -17,7 +17,7 @@ class TestPackage(ConanFile):
     def _components(self):
         options = self.dependencies["genrender"].options
         optional = [name for name in ("scene", "reference") if options.get_safe(name)]
-        return ["core", "inspection", "evaluation"] + optional
+        return ["core", "inspection", "evaluation", "c"] + optional
 
     def layout(self):
         cmake_layout(self)

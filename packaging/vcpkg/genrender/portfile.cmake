@@ -3,7 +3,7 @@
 get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 set(VCPKG_BUILD_TYPE release) # There is nothing but headers.
 
-set(components inspection evaluation)
+set(components inspection evaluation c)
 foreach(feature IN ITEMS scene reference)
     if(feature IN_LIST FEATURES)
         list(APPEND components ${feature})
