@@ -61,14 +61,6 @@ public:
     }
 
 private:
-    static strided_view<float, 4> channels_first(float* tokens, std::size_t frames) {
-        constexpr auto channels = std::ptrdiff_t{small_unet::latent_channels};
-        constexpr auto width = std::ptrdiff_t{small_unet::grid.width};
-        return {tokens,
-                {frames, small_unet::latent_channels, small_unet::grid.height, small_unet::grid.width},
-                {channels * width * std::ptrdiff_t{small_unet::grid.height}, 1, channels * width, channels}};
-    }
-
     struct engine {
         small_unet net;
         ov::Core core;

@@ -4,6 +4,7 @@
 
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/random.hpp>
+#include <genrender/core/strided_view.hpp>
 
 #include <array>
 #include <cmath>
@@ -89,5 +90,14 @@ private:
         return w;
     }
 };
+
+/// Latents [frames, channels, height, width] that lie as tokens [frames, height * width, channels].
+inline strided_view<float, 4> channels_first(float* tokens, std::size_t frames) {
+    constexpr auto channels = std::ptrdiff_t{small_unet::latent_channels};
+    constexpr auto width = std::ptrdiff_t{small_unet::grid.width};
+    return {tokens,
+            {frames, small_unet::latent_channels, small_unet::grid.height, small_unet::grid.width},
+            {channels * width * std::ptrdiff_t{small_unet::grid.height}, 1, channels * width, channels}};
+}
 
 } // namespace genrender::examples

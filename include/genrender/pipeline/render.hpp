@@ -182,7 +182,8 @@ GENRENDER_INSTANCE(make_blend_plan<double, chosen_correspondence<2>>);
 ///     auto const own = render<generative_rendering, my_map>(phi, UV, {.settings = settings, .make_map = make_my_map});
 ///
 /// A preparable_denoiser is told the shapes of the run before its first call. Throws value_error or shape_error for
-/// arguments that do not fit, before anything is run, and what the denoiser throws. A run that its observer ends returns what there is.
+/// arguments that do not fit, before anything is run, and what the denoiser throws. A run that its observer ends returns
+/// what there is.
 template <class Method = generative_rendering, class Map = void, class Phi, class Maps>
 render_result<typename detail::real_type_of<Phi>::type>
 render(Phi const& phi, Maps const& UV,

@@ -35,8 +35,8 @@ namespace genrender {
 /// These the compiler cannot check, and a model owes them (check_sequence_method_laws of
 /// testing/sequence_method_laws.hpp checks them): every evaluation runs the keyframes it announced and every frame
 /// once; estimates depend neither on the loop nor on `settings.frames_per_call`; equal arguments give equal estimates,
-/// from any thread: nothing is kept from one evaluation to the next, banks of features least of all, and what is drawn depends on the settings' seeds
-/// and the step alone. It does not require to read all settings; each model says which it leaves unread.
+/// from any thread: nothing is kept from one evaluation to the next, banks of features least of all, and what is drawn
+/// depends on the settings' seeds and the step alone. It does not require to read all settings; each model says which it leaves unread.
 ///
 /// See also: generative_rendering, the paper's method; pix2video and tokenflow, its baselines; sequence_passes,
 /// what it is given.
