@@ -142,7 +142,8 @@ TEST_SUITE("reference/weight_panels") {
                     weight_panels<Real> const narrow(
                         40, outputs, [&](auto i, auto o) { return W(i, o); }, storage);
                     weight_panels<Real> const wide(40, outputs, rounded);
-                    CHECK(narrow.bytes() * sizeof(Real) == wide.bytes() * 2);
+                    auto const kept = std::is_same_v<Real, float> ? std::size_t{2} : sizeof(Real);
+                    CHECK(narrow.bytes() * sizeof(Real) == wide.bytes() * kept);
                     stack<Real, 2> out({tokens, outputs});
                     stack<Real, 2> expected({tokens, outputs});
                     narrow.multiply(out.view(), token_inputs<Real>::rows_of(in.view()), {bias, {}});

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -85,17 +86,16 @@ public:
                   weight_storage storage = weight_storage::real)
         : target_(chosen_vector_target()), layout_(GENRENDER_KERNEL_OF(target_, internal, layout_of_panels<Real>)()),
           inputs_(inputs), outputs_(outputs) {
-        switch (storage) {
-        case weight_storage::float16:
-            fill<float16_bits>(weight_of,
-                               [](Real weight) { return float16_bits{half_of_float(static_cast<float>(weight))}; });
-            break;
-        case weight_storage::bfloat16:
-            fill<bfloat16_bits>(
-                weight_of, [](Real weight) { return bfloat16_bits{bfloat16_of_float(static_cast<float>(weight))}; });
-            break;
-        default:
-            fill<Real>(weight_of, [](Real weight) { return weight; });
+        if (storage == weight_storage::float16) {
+            fill<kept<float16_bits>>([&](std::size_t i, std::size_t o) {
+                return float16_bits{half_of_float(static_cast<float>(weight_of(i, o)))};
+            });
+        } else if (storage == weight_storage::bfloat16) {
+            fill<kept<bfloat16_bits>>([&](std::size_t i, std::size_t o) {
+                return bfloat16_bits{bfloat16_of_float(static_cast<float>(weight_of(i, o)))};
+            });
+        } else {
+            fill<Real>(weight_of);
         }
     }
 
@@ -123,8 +123,17 @@ public:
                   any_loop const& loop = {}) const;
 
 private:
-    template <class Stored, class WeightOf, class Round>
-    void fill(WeightOf const& weight_of, Round const& round) {
+    /// What a product reads: 16 bits where it computes in float; one in double, which nobody would run for its memory,
+    /// reads their values in double.
+    template <class Bits>
+    using kept = std::conditional_t<std::is_same_v<Real, float>, Bits, Real>;
+    using kept_weights =
+        std::conditional_t<std::is_same_v<Real, float>,
+                           std::variant<stack<Real, 1>, stack<float16_bits, 1>, stack<bfloat16_bits, 1>>,
+                           std::variant<stack<Real, 1>>>;
+
+    template <class Stored, class WeightOf>
+    void fill(WeightOf const& weight_of) {
         auto const lane = layout_.lanes;
         auto const panel = 2 * lane;
         auto weights = stack<Stored, 1>::uninitialized({inputs_ * ((outputs_ + lane - 1) / lane * lane)});
@@ -133,7 +142,7 @@ private:
             auto const width = outputs_ - first > lane ? panel : lane;
             for (std::size_t i = 0; i < inputs_; ++i) {
                 for (std::size_t o = first; o < first + width; ++o) {
-                    *to++ = round(o < outputs_ ? weight_of(i, o) : Real{0});
+                    *to++ = o < outputs_ ? static_cast<Stored>(weight_of(i, o)) : Stored{};
                 }
             }
         }
@@ -144,7 +153,7 @@ private:
     internal::panel_layout layout_{1, 1};
     std::size_t inputs_ = 0;
     std::size_t outputs_ = 0;
-    std::variant<stack<Real, 1>, stack<float16_bits, 1>, stack<bfloat16_bits, 1>> weights_;
+    kept_weights weights_;
 };
 
 template <class Real>

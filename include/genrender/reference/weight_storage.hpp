@@ -8,7 +8,8 @@
 
 namespace genrender::reference {
 
-/// What type weights are kept in. Products are of the features' type in any case.
+/// What type weights are rounded to, and kept in where features are float: double keeps their values in full width.
+/// Products are of the features' type in any case.
 enum class weight_storage {
     real,    ///< that of the features
     float16, ///< IEEE binary16: half the memory of float
