@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # genrender_instances: the library's instances, compiled once for the larger of this project's programs, which link it and call
-# instead of compiling. First_render and half of the tests do without, as most users do. With sanitizers all use it: for the
+# instead of compiling. Half of the tests do without, as most users do. With sanitizers all use it: for the
 # processor's own target, optimised where what calls it is not.
 add_library(genrender_instances OBJECT ${CMAKE_CURRENT_LIST_DIR}/instances.cpp)
 target_link_libraries(genrender_instances PUBLIC ${genrender_targets} PRIVATE genrender_developer_flags)
