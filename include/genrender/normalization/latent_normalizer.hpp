@@ -74,7 +74,7 @@ public:
             std::size_t pixels = 0;
             for (std::size_t row = 0; row < background.extent(1); ++row) {
                 for (std::size_t column = 0; column < background.extent(2); ++column) {
-                    pixels += background(i, row, column) != 0 ? 1 : 0;
+                    pixels += background(i, row, column) != 0 ? std::size_t{1} : std::size_t{0};
                 }
             }
             pixels_.push_back(pixels);
