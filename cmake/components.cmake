@@ -340,6 +340,7 @@ genrender_component(c HEADERS
 
 genrender_adapter(torch PACKAGES Torch HEADERS
     adapters/torch.hpp
+    adapters/torch_latents.hpp
     adapters/torch_plans.hpp)
 
 genrender_adapter(cuda HEADERS

@@ -183,7 +183,7 @@ struct normalizing_device : device_denoiser<Host> {
     using Real = typename Host::real_type;
     using typename device_denoiser<Host>::latents_type;
 
-    void channel_statistics(strided_view<Real, 2> mean, strided_view<Real, 2> deviation, latents_type const& z,
+    void channel_statistics(strided_view<Real, 2> means, strided_view<Real, 2> deviations, latents_type const& z,
                             latents_type const& w) const {
         ++this->counts->statistics;
         auto const values = z.read();
@@ -192,12 +192,12 @@ struct normalizing_device : device_denoiser<Host> {
         for (std::size_t i = 0; i < values.extent(0); ++i) {
             auto const of_frame = counting.view()[i];
             std::copy_n(of_frame.data(), mask.size(), mask.begin());
-            auto const found =
-                masked_statistics(values.view()[i], strided_view<std::uint8_t const, 2>(
-                                                        mask.data(), {values.extent(2), values.extent(3)}));
+            auto const found = masked_statistics(
+                values.view()[i],
+                strided_view<std::uint8_t const, 2>(mask.data(), {values.extent(2), values.extent(3)}));
             for (std::size_t c = 0; c < values.extent(1); ++c) {
-                mean(i, c) = found.mean[c];
-                deviation(i, c) = found.deviation[c];
+                means(i, c) = found.mean[c];
+                deviations(i, c) = found.deviation[c];
             }
         }
     }
