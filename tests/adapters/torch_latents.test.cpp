@@ -138,8 +138,8 @@ TEST_SUITE("adapters/torch_latents") {
                 greatest = std::max(greatest, std::abs(viewed.data()[e]));
             }
             MESSAGE("greatest difference ", worst, " of ", greatest);
-            CHECK(worst <= 1e-5f * greatest);
-            CHECK(phi.uploads == 2); // the latents, and the background
+            CHECK(worst <= 1e-4f * greatest); // deviations of few pixels are divided by
+            CHECK(phi.uploads == 2);          // the latents, and the background
             CHECK(phi.downloads == 1);
         }
     }

@@ -84,9 +84,9 @@ public:
         auto const counted = w.to(at::kDouble);
         auto const over_pixels = [](at::Tensor const& x) { return x.sum(at::IntArrayRef({2, 3}), true); };
         auto const pixels = over_pixels(counted);
-        auto const means = over_pixels(values * counted) / pixels.clamp_min(1);
-        auto const squares = over_pixels((values - means).square() * counted);
-        auto const deviations = (squares / (pixels - 1).clamp_min(1) + 1e-5).sqrt();
+        auto const means = over_pixels(values.mul(counted)).div(pixels.clamp_min(1));
+        auto const squares = over_pixels(values.sub(means).square().mul(counted));
+        auto const deviations = squares.div(pixels.sub(1).clamp_min(1)).add(1e-5).sqrt();
         auto const both = at::cat({means, deviations}, 2).squeeze(3).to(at::kCPU, at::kFloat);
         tensor_of(mean).copy_(both.select(2, 0));
         tensor_of(deviation).copy_(both.select(2, 1));
@@ -100,7 +100,7 @@ public:
         auto const by_channel = [&](strided_view<float const, 2> view) {
             return tensor_of(view).to(at::TensorOptions(latents_device_), at_once, copies).unsqueeze(2).unsqueeze(3);
         };
-        return (z - by_channel(mean_from)) * by_channel(scale) + by_channel(mean_to);
+        return z.sub(by_channel(mean_from)).mul(by_channel(scale)).add(by_channel(mean_to));
     }
 
 private:
