@@ -15,7 +15,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <string>
+#include <limits>
+#include <span>
 #include <vector>
 
 using namespace genrender;
@@ -58,6 +59,20 @@ TEST_SUITE("pipeline/run_sampler") {
         CHECK(are_same(frames_of(device{}, settings, threads), expected));
         CHECK(are_same(frames_of(whole_device{}, settings, threads), expected));
     }
+
+    /// Estimates of frame 4 are not finite.
+    struct breaks_at_frame_4 : host {
+        template <class Processor>
+        void operator()(strided_view<float, 4> x0, strided_view<float const, 4> z, float sigma,
+                        std::span<frame_index const> frames, Processor& processor) const {
+            host::operator()(x0, z, sigma, frames, processor);
+            for (std::size_t i = 0; i < frames.size(); ++i) {
+                if (frames[i].value == 4) {
+                    x0(i, 1, 2, 3) = std::numeric_limits<float>::quiet_NaN();
+                }
+            }
+        }
+    };
 
     } // namespace
 
@@ -151,6 +166,14 @@ TEST_SUITE("pipeline/run_sampler") {
             CHECK(are_same(on_device.z, on_host.z));
             CHECK(phi.counts->downloads == 1);
         }
+    }
+    TEST_CASE("estimates on a device that are not finite end the run with the sentence of the host") {
+        testing::device_denoiser<breaks_at_frame_4> const phi;
+        CHECK_THROWS_WITH_AS(
+            frames_of(phi, few_steps()),
+            "sequence_denoiser: the denoiser's estimate of frame 4 in step 0 is nan, expected finite latents",
+            value_error);
+        CHECK(phi.counts->downloads == 1); // for the sentence alone
     }
     TEST_CASE("reports are those of the host") {
         auto settings = few_steps();
