@@ -83,8 +83,10 @@ public:
 
     /// Normalises z; returns the frames that were skipped. Throws as above.
     std::vector<std::size_t> operator()(lent_latents<Phi>& z, adain_settings<real_type> const& settings) const {
-        auto const [frames, channels, height, width] = z.extents();
-        require_shape("latent_normalizer", "background", background_, {frames, height, width});
+        auto const frames = z.extents()[0];
+        auto const channels = z.extents()[1];
+        auto const pixels = z.extents()[2] * z.extents()[3];
+        require_shape("latent_normalizer", "background", background_, {frames, z.extents()[2], z.extents()[3]});
         auto const of_background = statistics(z, uploaded(on_background_, false), pixels_);
         std::optional<std::vector<channel_statistics<real_type>>> of_all;
         rescaling by(frames, channels);
@@ -92,8 +94,7 @@ public:
             frames, settings,
             [&](std::size_t i, bool of_all_pixels) {
                 if (of_all_pixels && !of_all) {
-                    of_all =
-                        statistics(z, uploaded(everywhere_, true), std::vector<std::size_t>(frames, height * width));
+                    of_all = statistics(z, uploaded(everywhere_, true), std::vector<std::size_t>(frames, pixels));
                 }
                 return of_all_pixels ? (*of_all)[i] : of_background[i];
             },

@@ -199,9 +199,10 @@ struct lender_trials {
     /// Of a normalizing_lender.
     void check_normalization() const {
         auto z = random(3, 10);
-        auto const [frames, channels, height, width] = z.extents();
-        auto const pixels = height * width;
-        stack<Real, 4> w({frames, 1, height, width});
+        auto const frames = z.extent(0);
+        auto const channels = z.extent(1);
+        auto const pixels = z.extent(2) * z.extent(3);
+        stack<Real, 4> w({frames, 1, z.extent(2), z.extent(3)});
         for (std::size_t i = 0; i < frames; ++i) {
             for (std::size_t p = 0; p < pixels; ++p) {
                 w.data()[i * pixels + p] = (p + i) % 3 != 0 || i == 2 ? 1 : 0;
