@@ -134,6 +134,9 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     sampling/euler.hpp
     sampling/heun.hpp
     sampling/karras_schedule.hpp
+    sampling/latent_combination.hpp
+    sampling/latent_lender.hpp
+    sampling/lent_latents.hpp
     sampling/noise_schedule.hpp
     sampling/preconditioning.hpp
     sampling/run_shapes.hpp
@@ -164,13 +167,16 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     normalization/adain.inl
     normalization/channel_statistics.hpp
     normalization/channel_statistics.inl
+    normalization/latent_normalizer.hpp
     pipeline/generative_rendering.hpp
     pipeline/memory_plan.hpp
+    pipeline/pass_latents.hpp
     pipeline/progress.hpp
     pipeline/render.hpp
     pipeline/render_report.hpp
     pipeline/render_settings.hpp
     pipeline/run_description.hpp
+    pipeline/run_sampler.hpp
     pipeline/sequence_denoiser.hpp
     pipeline/sequence_passes.hpp
     pipeline/sequence_method.hpp
@@ -188,6 +194,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     testing/attention_processor_laws.hpp
     testing/correspondence_laws.hpp
     testing/denoiser_laws.hpp
+    testing/latent_lender_laws.hpp
     testing/law_report.hpp
     testing/parallel_loop_laws.hpp
     testing/random_stack.hpp
@@ -333,6 +340,7 @@ genrender_component(c HEADERS
 
 genrender_adapter(torch PACKAGES Torch HEADERS
     adapters/torch.hpp
+    adapters/torch_latents.hpp
     adapters/torch_plans.hpp)
 
 genrender_adapter(cuda HEADERS

@@ -84,6 +84,9 @@
 #include <genrender/sampling/euler.hpp>
 #include <genrender/sampling/heun.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
+#include <genrender/sampling/latent_combination.hpp>
+#include <genrender/sampling/latent_lender.hpp>
+#include <genrender/sampling/lent_latents.hpp>
 #include <genrender/sampling/noise_schedule.hpp>
 #include <genrender/sampling/preconditioning.hpp>
 #include <genrender/sampling/run_shapes.hpp>
@@ -115,14 +118,17 @@
 
 #include <genrender/normalization/adain.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
+#include <genrender/normalization/latent_normalizer.hpp>
 
 #include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/memory_plan.hpp>
+#include <genrender/pipeline/pass_latents.hpp>
 #include <genrender/pipeline/progress.hpp>
 #include <genrender/pipeline/render.hpp>
 #include <genrender/pipeline/render_report.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 #include <genrender/pipeline/run_description.hpp>
+#include <genrender/pipeline/run_sampler.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/pipeline/sequence_passes.hpp>
 #include <genrender/pipeline/sequence_method.hpp>

@@ -13,6 +13,8 @@ using namespace genrender;
 
 int main() {
     require_denoiser<right_denoiser>();
+    require_latent_lender<right_denoiser>();
+    require_latent_lender<right_lender>();
     require_attention_call<right_call>();
     require_correspondence_map<correspondence_map_archetype>();
     require_canonical_maps<uv_maps_view>();

@@ -25,6 +25,13 @@ TEST_SUITE("sampling/storing_denoiser") {
     };
     struct opaque {};
 
+    // Whether 16 bits for a denoiser of this type compile.
+    static_assert(keyframe_storage_for<names_a_storing_call, feature_storage::f16>() == feature_storage::f16);
+    static_assert(keyframe_storage_for<host, feature_storage::bf16>() == feature_storage::bf16);
+    static_assert(keyframe_storage_for<names_another, feature_storage::same>() == feature_storage::same);
+    static_assert(keyframe_storage_for<denoiser_archetype<float, opaque>, feature_storage::f16>() ==
+                  feature_storage::f16);
+
     static_assert(call_naming_denoiser<names_a_storing_call> && call_naming_denoiser<names_another>);
     static_assert(!call_naming_denoiser<host> && !call_naming_denoiser<names_nonsense>);
     static_assert(stores_16_bits<names_a_storing_call>() == true);

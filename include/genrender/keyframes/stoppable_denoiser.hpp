@@ -6,6 +6,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/sampling/denoiser.hpp>
+#include <genrender/sampling/latent_lender.hpp>
 
 #include <concepts>
 #include <cstddef>
@@ -27,7 +28,7 @@ namespace genrender {
 ///                                                    |      | does, to the bit; nothing of a branch without a last
 ///                                                    |      | site. `last` has one entry a branch
 ///
-/// Sites count in the order of sites(), so a network that stops saves most where that is the order in which it runs
+/// z is a latents_type of a latent_lender, too. Sites count in the order of sites(), so a network that stops saves most where that is the order in which it runs
 /// them. It may run more sites than asked for, each once; z is not changed (check_denoiser_laws of
 /// testing/denoiser_laws.hpp checks this).
 template <class Phi>
@@ -69,6 +70,20 @@ concept residual_lender = stoppable_denoiser<Phi> && std::movable<typename Phi::
 
 namespace detail {
 
+/// Whether a denoiser that lends latents and stops takes handles where it stops; true for others.
+template <class Phi>
+concept lender_stops = !latent_lender<Phi> || !stoppable_denoiser<Phi> ||
+                       requires(Phi const& phi, typename Phi::latents_type const& z, typename Phi::real_type sigma,
+                                std::span<frame_index const> frames, attention_processor_archetype& processor,
+                                std::span<std::optional<site_index> const> last) {
+    phi.run_until(z, sigma, frames, processor, last);
+    requires !residual_lender<Phi> ||
+        requires(typename Phi::residuals_type & lent, typename Phi::residuals_type const& known) {
+        phi.run_until(z, sigma, frames, processor, last, &lent);
+        { phi(z, sigma, frames, processor, known) } -> std::convertible_to<typename Phi::latents_type>;
+    };
+};
+
 struct no_residuals {};
 
 template <class Phi>
@@ -82,6 +97,11 @@ struct residuals_of<Phi> {
 };
 
 } // namespace detail
+
+/// What the compiler says of a latent_lender that can end a call of views alone.
+#define GENRENDER_LENDER_STOPS                                                                                         \
+    "latent_lender: run_until(z, sigma, frames, processor, last) takes z as latents_type const&, too, and where "      \
+    "residuals are lent run_until(..., &lent) and operator()(z, sigma, frames, processor, lent)"
 
 /// What a denoiser lends; an empty type for one that does not.
 template <denoiser Phi>

@@ -72,6 +72,45 @@ struct adain_settings {
     bool on_noisy_latents = false; ///< normalise z_{t-1} after the sampler's step instead of the clean estimates
 };
 
+namespace detail {
+
+/// Normalises frames by `rescale(i, from, to)`, called for each frame that changes, with what `statistics(i,
+/// of_all_pixels)` tells of a frame's background or of all of it. Returns the frames that were skipped.
+template <class Real, class Statistics, class Rescale>
+std::vector<std::size_t> normalize_frames(std::size_t frames, adain_settings<Real> const& settings,
+                                          Statistics const& statistics, Rescale const& rescale) {
+    auto const least = std::max<std::size_t>(settings.least_pixels, 2);
+    auto const rescale_to = [&](std::size_t i, channel_statistics<Real> from, channel_statistics<Real> const& to) {
+        if (settings.statistics == adain_statistics::mean) {
+            from.deviation = to.deviation;
+        }
+        rescale(i, from, to);
+    };
+    std::vector<std::size_t> skipped;
+    if (frames == 0) {
+        return skipped;
+    }
+    // Frame 0 stays as it is, so its statistics can be taken before the others change.
+    auto const first = statistics(0, false);
+    for (std::size_t i = 0; i < frames; ++i) {
+        auto const own = statistics(i, false);
+        if (own.pixels >= least && first.pixels >= least) {
+            if (i > 0) {
+                rescale_to(i, own, first);
+            }
+        } else if (settings.fallback == without_background::all_pixels) {
+            if (i > 0) {
+                rescale_to(i, statistics(i, true), statistics(0, true));
+            }
+        } else {
+            skipped.push_back(i);
+        }
+    }
+    return skipped;
+}
+
+} // namespace detail
+
 inline namespace GENRENDER_UNIT {
 
 /// Normalises a sequence z [frames, channels, height, width] in place: each frame's statistics over its own
@@ -82,41 +121,16 @@ template <class Real>
 std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view<std::uint8_t const, 3> background,
                                            adain_settings<std::type_identity_t<Real>> const& settings = {}) {
     require_shape("normalize_latents", "background", background, {z.extent(0), z.extent(2), z.extent(3)});
-    auto const least = std::max<std::size_t>(settings.least_pixels, 2);
     std::vector<std::uint8_t> const everywhere(z.extent(2) * z.extent(3), 1);
     strided_view<std::uint8_t const, 2> const all(everywhere.data(), {z.extent(2), z.extent(3)});
-    auto const statistics = [&](std::size_t i, auto const& mask) {
-        return masked_statistics(strided_view<Real const, 3>(z[i]), mask);
-    };
-
-    auto const rescale = [&](std::size_t i, channel_statistics<Real> from, channel_statistics<Real> const& to) {
-        if (settings.statistics == adain_statistics::mean) {
-            from.deviation = to.deviation;
-        }
-        adain(z[i], from, to);
-    };
-
-    std::vector<std::size_t> skipped;
-    if (z.extent(0) == 0) {
-        return skipped;
-    }
-    // Frame 0 stays as it is, so its statistics can be taken before the others change.
-    auto const first = statistics(0, background[0]);
-    for (std::size_t i = 0; i < z.extent(0); ++i) {
-        auto const own = statistics(i, background[i]);
-        if (own.pixels >= least && first.pixels >= least) {
-            if (i > 0) {
-                rescale(i, own, first);
-            }
-        } else if (settings.fallback == without_background::all_pixels) {
-            if (i > 0) {
-                rescale(i, statistics(i, all), statistics(0, all));
-            }
-        } else {
-            skipped.push_back(i);
-        }
-    }
-    return skipped;
+    return detail::normalize_frames(
+        z.extent(0), settings,
+        [&](std::size_t i, bool of_all_pixels) {
+            return masked_statistics(strided_view<Real const, 3>(z[i]), of_all_pixels ? all : background[i]);
+        },
+        [&](std::size_t i, channel_statistics<Real> const& from, channel_statistics<Real> const& to) {
+            adain(z[i], from, to);
+        });
 }
 
 GENRENDER_INSTANCE(normalize_latents<float>);

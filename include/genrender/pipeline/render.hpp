@@ -11,11 +11,12 @@
 #include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/maps/cell_extents.hpp>
+#include <genrender/pipeline/run_sampler.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/pipeline/shapes_of_run.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
+#include <genrender/sampling/latent_lender.hpp>
 #include <genrender/sampling/run_shapes.hpp>
-#include <genrender/sampling/sampler.hpp>
 #include <genrender/sampling/storing_denoiser.hpp>
 
 #include <chrono>
@@ -26,6 +27,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace genrender {
@@ -155,18 +157,6 @@ correspondence_set<Map> compile_maps(Phi const& phi, Method const& method, rende
     return maps;
 }
 
-/// Samples from z by an erased D: samplers are compiled once for all networks, maps and methods.
-template <class Real>
-void sample_latents(sampler_kind sampler,
-                    std::function<latents<Real>(latents<Real> const&, Real, std::size_t)> const& D,
-                    latents<Real> const& z, std::vector<Real> const& sigmas,
-                    std::function<void(std::size_t, latents<Real>&)> const& after_step) {
-    sample(sampler, D, z, sigmas, after_step);
-}
-
-GENRENDER_INSTANCE(sample_latents<float>);
-GENRENDER_INSTANCE(sample_latents<double>);
-
 } // namespace detail
 
 GENRENDER_INSTANCE(make_blend_plan<float, chosen_correspondence<2>>);
@@ -181,7 +171,8 @@ GENRENDER_INSTANCE(make_blend_plan<double, chosen_correspondence<2>>);
 ///     auto const flow = render<tokenflow>(phi, UV, {.settings = settings});
 ///     auto const own = render<generative_rendering, my_map>(phi, UV, {.settings = settings, .make_map = make_my_map});
 ///
-/// A preparable_denoiser is told the shapes of the run before its first call. Throws value_error or shape_error for
+/// A preparable_denoiser is told the shapes of the run before its first call. Noise is made in host memory; latents of a
+/// latent_lender are its engine's from there to the end. Throws value_error or shape_error for
 /// arguments that do not fit, before anything is run, and what the denoiser throws. A run that its observer ends returns
 /// what there is.
 template <class Method = generative_rendering, class Map = void, class Phi, class Maps>
@@ -189,7 +180,7 @@ render_result<typename detail::real_type_of<Phi>::type>
 render(Phi const& phi, Maps const& UV,
        render_arguments<typename detail::real_type_of<Phi>::type, Method,
                         detail::map_or_chosen<Map, detail::dimensions_of<Maps>>> const& arguments) {
-    // As require_denoiser and require_canonical_maps, and here so that a compiler comes to the sentence at once.
+    // As require_denoiser, require_latent_lender and require_canonical_maps, and here so that a compiler comes to the sentence at once.
     static_assert(detail::denoiser_names_types<Phi>, GENRENDER_DENOISER_TYPES);
     static_assert(detail::denoiser_tells_latents<Phi>, GENRENDER_DENOISER_LATENTS);
     static_assert(detail::denoiser_tells_sites<Phi>, GENRENDER_DENOISER_SITES);
@@ -199,6 +190,15 @@ render(Phi const& phi, Maps const& UV,
     static_assert(detail::denoiser_call_is_right<Phi> || !detail::denoiser_call_is_const<Phi> ||
                       !detail::denoiser_keeps_z<Phi>,
                   GENRENDER_DENOISER_CALL);
+    static_assert(detail::lender_names_handle<Phi>, GENRENDER_LENDER_HANDLE);
+    static_assert(detail::lender_uploads<Phi>, GENRENDER_LENDER_UPLOAD);
+    static_assert(detail::lender_downloads<Phi>, GENRENDER_LENDER_DOWNLOAD);
+    static_assert(detail::lender_gives_frames<Phi>, GENRENDER_LENDER_FRAMES);
+    static_assert(detail::lender_joins<Phi>, GENRENDER_LENDER_JOINED);
+    static_assert(detail::lender_combines<Phi>, GENRENDER_LENDER_COMBINATION);
+    static_assert(detail::lender_tells_finite<Phi>, GENRENDER_LENDER_FINITE);
+    static_assert(detail::lender_estimates<Phi>, GENRENDER_LENDER_CALL);
+    static_assert(detail::lender_stops<Phi>, GENRENDER_LENDER_STOPS);
     static_assert(detail::maps_tell_dimensions<Maps>, GENRENDER_MAPS_DIMENSIONS);
     static_assert(detail::maps_tell_extents<Maps>, GENRENDER_MAPS_EXTENTS);
     static_assert(detail::maps_tell_coverage<Maps>, GENRENDER_MAPS_COVERAGE);
@@ -253,15 +253,7 @@ render(Phi const& phi, Maps const& UV,
         progress_meter meter(settings.steps, total, arguments.observer);
         sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
                                   report, method);
-        try {
-            detail::sample_latents<Real>(settings.sampler, std::cref(D), result.z, sigmas,
-                                         [&](std::size_t step, latents<Real>& z) {
-                                             D.after_step(step, z);
-                                             result.z = z;
-                                         });
-        } catch (cancelled const&) {
-            result.is_cancelled = true;
-        }
+        result.is_cancelled = run_sampler<Real>(phi, D, result.z, sigmas, settings.sampler);
         return result;
     }
 }

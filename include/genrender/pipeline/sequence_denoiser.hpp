@@ -5,8 +5,9 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/finite.hpp>
-#include <genrender/normalization/adain.hpp>
+#include <genrender/normalization/latent_normalizer.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
+#include <genrender/pipeline/pass_latents.hpp>
 #include <genrender/pipeline/sequence_passes.hpp>
 #include <genrender/pipeline/sequence_method.hpp>
 
@@ -39,6 +40,7 @@ class sequence_denoiser {
 public:
     using real_type = typename Phi::real_type;         ///< scalar of the latents
     using features_type = typename Phi::features_type; ///< the engine's handle of features
+    using latents_type = run_latents<Phi>;             ///< z and x0, in host memory or lent
 
     /// `sigmas` are the run's noise levels; `background` [frames, height, width] of the latents. Everything but the
     /// method is referred to and must outlive the sequence denoiser.
@@ -46,16 +48,17 @@ public:
                       strided_view<std::uint8_t const, 3> background, std::span<real_type const> sigmas,
                       render_settings<real_type> const& settings, any_loop loop, progress_meter& meter,
                       report_writer& report, Method method = {})
-        : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, background_(background), sigmas_(sigmas),
+        : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, normalizer_(phi, background), sigmas_(sigmas),
           method_(std::move(method)) {}
 
     /// The clean estimates of all frames of z [frames, channels, height, width] at noise level sigmas[step]; a second
     /// evaluation within a step, such as Heun's, is one of the step that begins at its level. Throws value_error if an
     /// estimate is not finite, cancelled if the observer says so, and what the denoiser throws.
-    latents<real_type> operator()(latents<real_type> const& z, real_type sigma, std::size_t step) const {
-        auto x0 = latents<real_type>::from_shape(z.shape());
+    latents_type operator()(latents_type const& z, real_type sigma, std::size_t step) const {
+        auto x0 = estimates_for(z);
         method_(sequence_passes<Phi, Map>(run_, x0, z, sigma, step));
         require_finite(x0, step);
+        // What else is to be done with the estimates of all frames stands here: on_host(x0, change) where no engine lends it.
         auto const& normalization = run_.settings->normalization;
         if (!normalization.on_noisy_latents) {
             normalize(x0, step);
@@ -64,13 +67,13 @@ public:
     }
 
     /// The same for samplers that do not tell the step, which is looked up by sigma.
-    latents<real_type> operator()(latents<real_type> const& z, real_type sigma) const {
+    latents_type operator()(latents_type const& z, real_type sigma) const {
         return (*this)(z, sigma, step_at(sigmas_, sigma));
     }
 
     /// What the settings ask of the noisy latents after a step of the sampler: normalisation in place, where it is
     /// theirs and not that of the clean estimates.
-    void after_step(std::size_t step, latents<real_type>& z) const {
+    void after_step(std::size_t step, latents_type& z) const {
         if (run_.settings->normalization.on_noisy_latents) {
             normalize(z, step);
         }
@@ -78,20 +81,30 @@ public:
 
 private:
     /// Normalises latents of the whole sequence in place where the settings' window holds `step` [GR sec. 3.4].
-    void normalize(latents<real_type>& z, std::size_t step) const {
+    void normalize(latents_type& z, std::size_t step) const {
         using clock = std::chrono::steady_clock;
         auto const& normalization = run_.settings->normalization;
         if (normalization.enabled &&
             is_in_window(step, run_.settings->steps, normalization.window_begin, normalization.window_end)) {
             auto const start = clock::now();
-            run_.report->add_skipped(normalize_latents(to_view(z), background_, normalization));
+            run_.report->add_skipped(normalizer_(z, normalization));
             run_.report->add_seconds(0, std::chrono::duration<double>(clock::now() - start).count());
         }
     }
 
-    /// Refuses estimates that would poison every later step.
-    static void require_finite(latents<real_type> const& x0, std::size_t step) {
-        auto const values = x0.size() / x0.shape()[0];
+    /// Refuses estimates that would poison every later step. Those that are lent are downloaded for the sentence alone.
+    void require_finite(latents_type const& x0, std::size_t step) const {
+        if constexpr (latent_lender<Phi>) {
+            if (!run_.phi->all_finite(x0.handle())) {
+                auto refused = x0;
+                refused.on_host([&](strided_view<real_type const, 4> view) { require_finite_elements(view, step); });
+            }
+        } else {
+            require_finite_elements(to_view(x0), step);
+        }
+    }
+    static void require_finite_elements(strided_view<real_type const, 4> x0, std::size_t step) {
+        auto const values = x0.size() / x0.extent(0);
         for (std::size_t i = 0; i < x0.size(); ++i) {
             if (!is_finite(x0.data()[i])) {
                 throw value_error("sequence_denoiser: the denoiser's estimate of frame " + std::to_string(i / values) +
@@ -102,7 +115,7 @@ private:
     }
 
     sequence_run<Phi, Map> run_;
-    strided_view<std::uint8_t const, 3> background_;
+    latent_normalizer<Phi> normalizer_;
     std::span<real_type const> sigmas_;
     Method method_;
 };

@@ -9,10 +9,10 @@
 #include <genrender/blending/blend_plans.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/plan_key.hpp>
-#include <genrender/core/tensor.hpp>
 #include <genrender/correspondence/correspondence_set.hpp>
 #include <genrender/keyframes/recorder.hpp>
 #include <genrender/keyframes/stoppable_denoiser.hpp>
+#include <genrender/pipeline/pass_latents.hpp>
 #include <genrender/pipeline/progress.hpp>
 #include <genrender/pipeline/render_report.hpp>
 #include <genrender/pipeline/render_settings.hpp>
@@ -50,18 +50,19 @@ class sequence_passes {
 public:
     using real_type = typename Phi::real_type;         ///< scalar of the latents
     using features_type = typename Phi::features_type; ///< the engine's handle of features
+    using latents_type = run_latents<Phi>;             ///< z and x0, in host memory or lent
     /// Reads z and writes the clean estimates x0, both [frames, channels, height, width]. Everything is referred to and
     /// must outlive the evaluation.
-    sequence_passes(sequence_run<Phi, Map> const& run, latents<real_type>& x0, latents<real_type> const& z,
-                    real_type sigma, std::size_t step)
-        : run_(&run), x0_(&x0), z_(&z), sigma_(sigma), step_(step) {}
+    sequence_passes(sequence_run<Phi, Map> const& run, latents_type& x0, latents_type const& z, real_type sigma,
+                    std::size_t step)
+        : run_(&run), latents_(*run.phi, x0, z), sigma_(sigma), step_(step) {}
 
     /// Settings of the run.
     render_settings<real_type> const& settings() const { return *run_->settings; }
     /// Diffusion step, from 0.
     std::size_t step() const { return step_; }
     /// Number of frames of the animation.
-    std::size_t frame_count() const { return z_->shape()[0]; }
+    std::size_t frame_count() const { return latents_.frame_count(); }
 
     /// Whether the settings let a place take part.
     bool takes_part(attention_place place) const {
@@ -83,17 +84,10 @@ public:
     feature_bank<features_type> record_keyframes(std::vector<frame_index> const& KF, bool extended) const {
         run_->meter->begin(step_, render_pass::keyframes, KF.size());
         auto const start = clock::now();
-        auto const& shape = z_->shape();
-        auto z_KF = latents<real_type>::from_shape({KF.size(), shape[1], shape[2], shape[3]});
-        for (std::size_t k = 0; k < KF.size(); ++k) {
-            copy(to_view(z_KF)[k], to_view(*z_)[KF[k].value]);
-        }
         auto bank = new_bank();
         auto const participates = [this](attention_place place) { return takes_part(place); };
         recorder<features_type> const record(bank, participates, extended, settings().keyframe_storage);
-        auto const begin = clock::now();
-        run_keyframes(to_view(std::as_const(z_KF)), KF, record);
-        auto const denoiser = seconds_since(begin);
+        auto const denoiser = run_keyframes(KF, record);
         run_->report->add_seconds(denoiser, seconds_since(start) - denoiser);
         require_recorded(bank, "keyframes");
         run_->meter->add(KF.size());
@@ -182,62 +176,52 @@ private:
         return std::chrono::duration<double>(clock::now() - start).count();
     }
 
-    /// The keyframe pass of a denoiser that can end it early, or of one that estimates frames that nobody asked for.
-    void run_keyframes(strided_view<real_type const, 4> z_KF, std::vector<frame_index> const& KF,
-                       recorder<features_type> const& record) const {
+    /// The keyframe pass of a denoiser that can end it early, or of one that estimates frames that nobody asked for. Gives
+    /// the seconds of the denoiser.
+    double run_keyframes(std::vector<frame_index> const& KF, recorder<features_type> const& record) const {
+        double seconds = 0;
+        auto const timed = [&](auto const& run) {
+            auto const begin = clock::now();
+            run();
+            seconds = seconds_since(begin);
+        };
         if constexpr (stoppable_denoiser<Phi>) {
             auto const last = last_sites(*run_->phi, [this](attention_place place) { return takes_part(place); });
-            if constexpr (residual_lender<Phi>) {
-                run_->phi->run_until(z_KF, sigma_, KF, record, last, settings().reuses_keyframes ? &lent_ : nullptr);
-            } else {
-                run_->phi->run_until(z_KF, sigma_, KF, record, last);
-            }
+            latents_.read(KF, [&](auto const& z) {
+                timed([&] {
+                    if constexpr (residual_lender<Phi>) {
+                        run_->phi->run_until(z, sigma_, KF, record, last,
+                                             settings().reuses_keyframes ? &lent_ : nullptr);
+                    } else {
+                        run_->phi->run_until(z, sigma_, KF, record, last);
+                    }
+                });
+            });
         } else {
-            auto x0_KF =
-                latents<real_type>::from_shape({z_KF.extent(0), z_KF.extent(1), z_KF.extent(2), z_KF.extent(3)});
-            (*run_->phi)(to_view(x0_KF), z_KF, sigma_, KF, record);
+            latents_.read_and_drop(
+                KF, [&](auto const&... x0_and_z) { timed([&] { (*run_->phi)(x0_and_z..., sigma_, KF, record); }); });
         }
-    }
-
-    /// One call of the denoiser, which may know something of its frames from the keyframe pass.
-    template <class Processor>
-    void estimate(strided_view<real_type, 4> x0, strided_view<real_type const, 4> z,
-                  std::span<frame_index const> frames, Processor& processor) const {
-        if constexpr (residual_lender<Phi>) {
-            (*run_->phi)(x0, z, sigma_, frames, processor, lent_);
-        } else {
-            (*run_->phi)(x0, z, sigma_, frames, processor);
-        }
+        return seconds;
     }
 
     /// One call of the denoiser for the frames from `first` on, repeated up to `count` where the animation ends before.
-    /// Gives the seconds of the denoiser.
+    /// It may know something of its frames from the keyframe pass. Gives the seconds of the denoiser.
     template <class MakeProcessor>
-    double run_call(std::size_t first, std::size_t count, MakeProcessor const& make_processor) const {
+    double run_call(std::size_t call, std::size_t first, std::size_t count, MakeProcessor const& make_processor) const {
         auto const own = std::min(count, frame_count() - first);
         std::vector<frame_index> frames;
         for (std::size_t i = 0; i < count; ++i) {
             frames.push_back({static_cast<std::uint32_t>(first + std::min(i, own - 1))});
         }
         auto const& processor = make_processor(std::span<frame_index const>(frames));
-        auto const x0 = to_view(*x0_).slice(first, own);
-        auto const z = to_view(*z_).slice(first, own);
-        auto begin = clock::now();
-        if (own == count) {
-            estimate(x0, z, frames, processor);
-            return seconds_since(begin);
-        }
-        auto const& shape = z_->shape();
-        auto filled_x0 = latents<real_type>::from_shape({count, shape[1], shape[2], shape[3]});
-        auto filled_z = filled_x0;
-        for (std::size_t i = 0; i < count; ++i) {
-            copy(to_view(filled_z)[i], z[std::min(i, own - 1)]);
-        }
-        begin = clock::now();
-        estimate(to_view(filled_x0), to_view(std::as_const(filled_z)), frames, processor);
-        auto const seconds = seconds_since(begin);
-        copy(x0, to_view(std::as_const(filled_x0)).slice(0, own));
-        return seconds;
+        return latents_.write(call, frames, own, [&](auto const&... x0_and_z) {
+            std::span<frame_index const> const of_call(frames);
+            if constexpr (residual_lender<Phi>) {
+                return (*run_->phi)(x0_and_z..., sigma_, of_call, processor, lent_);
+            } else {
+                return (*run_->phi)(x0_and_z..., sigma_, of_call, processor);
+            }
+        });
     }
 
     /// Runs `body` for each call, as many at once as the settings let.
@@ -273,11 +257,14 @@ private:
         std::mutex mutex;
         double in_denoiser = 0; // Seconds of threads, which share the pass's seconds by the clock on the wall.
         double outside = 0;
-        run_calls(loop, (count + stride - 1) / stride, [&](std::size_t call) {
+        auto const calls = (count + stride - 1) / stride;
+        latents_.begin(calls);
+        run_calls(loop, calls, [&](std::size_t call) {
             auto const start = clock::now();
             auto const first = call * stride;
             auto const own = std::min(stride, count - first);
-            auto const denoiser = run_call(first, fills && settings().fills_last_call ? stride : own, make_processor);
+            auto const denoiser =
+                run_call(call, first, fills && settings().fills_last_call ? stride : own, make_processor);
             {
                 std::lock_guard const lock(mutex);
                 in_denoiser += denoiser;
@@ -285,14 +272,14 @@ private:
             }
             run_->meter->add(own);
         });
+        latents_.end();
         auto const share = in_denoiser / std::max(in_denoiser + outside, 1e-12);
         auto const seconds = seconds_since(pass_start);
         run_->report->add_seconds(seconds * share, seconds * (1 - share));
     }
 
     sequence_run<Phi, Map> const* run_;
-    latents<real_type>* x0_;
-    latents<real_type> const* z_;
+    mutable pass_latents<Phi> latents_; // z; x0, written by the pass over all frames
     real_type sigma_;
     std::size_t step_;
     mutable std::uint64_t evaluation_ = 0; // of the pass under way; written before its calls

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/sampling/euler.hpp>
+#include <genrender/sampling/latent_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
 #include <cmath>
@@ -20,14 +21,9 @@ namespace detail {
 template <class Latents, std::floating_point Real>
 void take_extrapolated_step(Latents& z, Latents const& x0, Latents const& x0_last, Real further, Real sigma,
                             Real sigma_next) {
-    if constexpr (viewed_latents<Latents, Real>) {
-        auto const kept = sigma_next / sigma;
-        auto const added = 1 - kept;
-        combine_latents<Real>(z, {kept, added * (1 + further), -added * further}, z, x0, x0_last);
-    } else {
-        Latents const x0_middle = x0 + further * (x0 - x0_last);
-        z = euler_step(z, x0_middle, sigma, sigma_next);
-    }
+    auto const kept = sigma_next / sigma;
+    auto const added = 1 - kept;
+    combine_latents<Real>(z, {kept, added * (1 + further), -added * further}, z, x0, x0_last);
 }
 
 } // namespace detail

@@ -4,53 +4,40 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/core/error.hpp>
-#include <genrender/core/linear_combination.hpp>
+#include <genrender/sampling/latent_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
-#include <array>
 #include <concepts>
 #include <cstddef>
 
 namespace genrender {
+
+namespace detail {
+
+/// `out`, which may be z, becomes euler_step(z, x0, sigma, sigma_next).
+template <class Latents, std::floating_point Real>
+void write_euler_step(Latents& out, Latents const& z, Latents const& x0, Real sigma, Real sigma_next) {
+    auto const kept = sigma_next / sigma;
+    combine_latents<Real>(out, {kept, 1 - kept}, z, x0);
+}
+
+} // namespace detail
 
 /// Latents one step further: z + (sigma_next - sigma) d along d = (z - x0) / sigma [EDM alg. 1, lines 4 and 5],
 /// gathered to (sigma_next / sigma) z + (1 - sigma_next / sigma) x0, so that sigma_next = 0 gives x0 to the bit.
 /// Expects sigma > 0.
 template <class Latents, std::floating_point Real>
 Latents euler_step(Latents const& z, Latents const& x0, Real sigma, Real sigma_next) {
-    auto const kept = sigma_next / sigma;
-    return kept * z + (1 - kept) * x0;
+    auto next = z;
+    detail::write_euler_step(next, z, x0, sigma, sigma_next);
+    return next;
 }
-
-namespace detail {
-
-/// out = sum of factors times `in`. Throws shape_error for estimates of other extents than z.
-template <class Real, class Latents, class... In>
-void combine_latents(Latents& out, std::array<Real, sizeof...(In)> const& factors, In const&... in) {
-    auto const view = to_view(out);
-    (require_extents("sampler", "D(z, sigma)", to_view(in).extents(), view.extents()), ...);
-    linear_combination(view, factors, std::array{to_view(in)...});
-}
-
-/// `out`, which may be z, becomes euler_step(z, x0, sigma, sigma_next).
-template <class Latents, std::floating_point Real>
-void write_euler_step(Latents& out, Latents const& z, Latents const& x0, Real sigma, Real sigma_next) {
-    if constexpr (viewed_latents<Latents, Real>) {
-        auto const kept = sigma_next / sigma;
-        combine_latents<Real>(out, {kept, 1 - kept}, z, x0);
-    } else {
-        out = euler_step(z, x0, sigma, sigma_next);
-    }
-}
-
-} // namespace detail
 
 /// The latents at the last of the noise levels, from z at the first, following D by Euler's method; the deterministic
 /// sampler of DDIM. D is evaluated once a step, steps being one fewer than levels.
 ///
-/// `Latents` is any value type with Latents + Latents, Latents - Latents and Real * Latents: a scalar, xt::xtensor,
-/// Eigen::Array. `after_step(step, z)` is called after each step, counted from 0, and may change z: what it leaves
+/// `Latents` is any value type with Latents + Latents and Real * Latents: a scalar, xt::xtensor, Eigen::Array; or one of
+/// viewed_latents and combined_latents. `after_step(step, z)` is called after each step, counted from 0, and may change z: what it leaves
 /// there is what the next step starts from. Keeps nothing between calls. Throws as require_noise_levels does, and
 /// what D and after_step throw.
 template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>

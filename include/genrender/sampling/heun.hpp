@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/sampling/euler.hpp>
+#include <genrender/sampling/latent_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
 
 #include <cstddef>
@@ -19,15 +20,9 @@ template <class Latents, std::floating_point Real>
 void take_mean_step(Latents& z, Latents const& x0, Latents const& z_euler, Latents const& x0_next, Real sigma,
                     Real sigma_next) {
     auto const half = (sigma_next - sigma) / 2;
-    if constexpr (viewed_latents<Latents, Real>) {
-        auto const here = half / sigma;
-        auto const there = half / sigma_next;
-        combine_latents<Real>(z, {1 + here, -here, there, -there}, z, x0, z_euler, x0_next);
-    } else {
-        Latents const d = (1 / sigma) * (z - x0);
-        Latents const d_next = (1 / sigma_next) * (z_euler - x0_next);
-        z = z + half * (d + d_next);
-    }
+    auto const here = half / sigma;
+    auto const there = half / sigma_next;
+    combine_latents<Real>(z, {1 + here, -here, there, -there}, z, x0, z_euler, x0_next);
 }
 
 } // namespace detail

@@ -44,6 +44,22 @@ void require_storage(feature_storage storage) {
     }
 }
 
+/// What the compiler says of 16 bits that a denoiser cannot store.
+#define GENRENDER_KEYFRAME_STORAGE                                                                                     \
+    "keyframe_storage_for: storage is of 16 bits, expected feature_storage::same for a denoiser whose call_type has "  \
+    "no `stored`"
+
+/// `Storage`, for settings of runs with a denoiser of this type; does not compile if that is known not to store it:
+///
+///     settings.keyframe_storage = keyframe_storage_for<my_denoiser, feature_storage::f16>();
+///
+/// Of a denoiser that tells nothing (stores_16_bits is empty) it is believed, and refused by the run if it is wrong.
+template <denoiser Phi, feature_storage Storage>
+consteval feature_storage keyframe_storage_for() {
+    static_assert(Storage == feature_storage::same || stores_16_bits<Phi>() != false, GENRENDER_KEYFRAME_STORAGE);
+    return Storage;
+}
+
 } // namespace genrender
 
 #include <genrender/core/end_header.inl>
