@@ -109,18 +109,23 @@ inline std::vector<std::string> scene_names(scene_set set) {
                                          : std::vector<std::string>(scenes::names.begin(), scenes::names.end());
 }
 
+/// What captions call the things of a scene. Throws as development_world does.
+inline subject_words subject_of(std::string const& name, scene_set set) {
+    return set == scene_set::development ? development_world(name, 1).subject()
+           : name == "walking_figure"    ? subject_words{"a", "figure"}
+                                         : subject_words{"some", "toys"};
+}
+
 /// The scene `name` in `frames` frames of `image` pixels, its maps `map_pixels` times as fine. Throws as make_scene,
 /// development_world and rasterize do.
 inline evaluation_scene make_evaluation_scene(std::string const& name, scene_set set, std::size_t frames,
                                               grid_extents image, any_loop const& loop, std::size_t map_pixels = 4) {
-    auto subject = name == "walking_figure" ? subject_words{"a", "figure"} : subject_words{"some", "toys"};
     std::vector<miniature::pattern_layout> layouts{miniature::pattern_layout::flat};
     auto animation = [&] {
         if (set == scene_set::held_out) {
             return compared_animation(name, frames);
         }
         development_world world(name, frames);
-        subject = world.subject();
         layouts = world.layouts();
         return scenes::any_animation(std::move(world));
     }();
@@ -131,7 +136,7 @@ inline evaluation_scene make_evaluation_scene(std::string const& name, scene_set
     auto rays = detail::rays_of(animation, fine);
     return {name,
             set,
-            std::move(subject),
+            subject_of(name, set),
             std::move(layouts),
             std::move(animation),
             image,

@@ -40,6 +40,7 @@ struct study {
     std::size_t steps = 20;
     std::span<std::size_t const> apart = intervals; ///< what errors are measured at
     std::size_t map_pixels = 4;                     ///< of the maps, along a side of a pixel of the images
+    bool is_alone = false; ///< one run at a time on all threads, so that its memory can be told
 };
 
 /// What the paper calls tables 1 and 2, on both presets.
@@ -89,7 +90,7 @@ inline std::vector<study> development_studies() {
     return {variants};
 }
 
-/// 240 frames of one scene.
+/// 240 frames of one scene, and a quarter of them, so that memory can be seen to grow or not.
 inline std::vector<study> long_studies() {
     study frames{"long", "A long sequence", {}, {"Per-Frame, UV noise", "TokenFlow*, fixed noise", "vivid"}};
     frames.scenes = {"walking_figure"};
@@ -97,7 +98,13 @@ inline std::vector<study> long_studies() {
     frames.frames = 240;
     frames.apart = long_intervals;
     frames.map_pixels = 2; // 18 bytes a pixel of maps and frame
-    return {frames};
+    frames.is_alone = true;
+    auto quarter = frames;
+    quarter.name = "long_quarter";
+    quarter.title = "A quarter of the long sequence";
+    quarter.rows = {"vivid"};
+    quarter.frames = 60;
+    return {quarter, frames};
 }
 
 /// One animation to make and measure, by the numbers of what it is made of.

@@ -139,6 +139,10 @@ inline std::string study_tables(study const& of, std::span<run_figures const> ru
     section("What pictures look like", markdown_table(runs, rows, measured(runs, looks)));
     section("By the embedder", markdown_table(runs, rows, measured(runs, embedded)));
     section("Flicker and sticking", markdown_table(runs, rows, measured(runs, flickers)));
+    section("Cost", markdown_table(runs, rows,
+                                   measured(runs, std::vector<table_column>{{"seconds_a_frame", "Seconds a frame"},
+                                                                            {"megabytes", "Memory of the run, MB"},
+                                                                            {"map_megabytes", "of maps, MB"}})));
     if (of.set == scene_set::held_out) {
         for (auto const* const preset : {"vivid", "paper"}) {
             if (std::find(rows.begin(), rows.end(), preset) != rows.end()) {
