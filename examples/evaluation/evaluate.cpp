@@ -113,7 +113,7 @@ public:
         : told_(told), loop_(told.threads), pipeline_(pipeline_files(told.pipeline)),
           embedder_(reference_clip<float>::from_folder(told.embedder)), store_(told.out / "runs") {
         auto const nearness = tensor<float, 3>::from_shape({1, image_grid.height, image_grid.width});
-        auto const phi = pipeline_.network(pipeline_.conditioning(to_view(nearness), {.text = ""}));
+        auto const phi = pipeline_.network(pipeline_.conditioning(to_view(nearness), {.text = "", .guidance_scale = told.guidance}));
         sites_.assign(phi.sites().begin(), phi.sites().end());
         branches_ = static_cast<std::uint32_t>(phi.branches());
         networks_key_ = "library = " GENRENDER_VERSION_STRING "\nmeasures = " + std::to_string(measures_version) +
@@ -191,7 +191,7 @@ private:
 
     /// All that a run's figures depend on.
     std::string key_of(study const& of, planned_run const& planned, compared_row const& row) const {
-        auto const& caption = captions_of(of.set)[planned.caption];
+        auto const caption = captions_of(of.set)[planned.caption];
         auto const scene = scenes_of(of)[planned.scene];
         std::ostringstream key;
         key << networks_key_ << "scene = " << scene << (of.set == scene_set::development ? ", development" : "")
@@ -280,7 +280,7 @@ private:
 
     void make_run(study const& of, planned_run const& planned, compared_row const& row, evaluation_scene const& scene,
                   network const* phi, any_loop const& loop) {
-        auto const& caption = captions_of(of.set)[planned.caption];
+        auto const caption = captions_of(of.set)[planned.caption];
         kept_run made;
         auto images = tensor<float, 4>::from_shape({0, 3, 1, 1});
         std::optional<std::int64_t> grown;

@@ -77,12 +77,22 @@ Settings paper_of() {
     }
 }
 
+/// What measured best; the default.
+template <class Settings>
+Settings vivid_of() {
+    if constexpr (requires { Settings::vivid(); }) {
+        return Settings::vivid();
+    } else {
+        return {};
+    }
+}
+
 } // namespace detail
 
 /// The paper to the letter.
 inline row_settings paper() { return detail::paper_of<row_settings>(); }
-/// The library's default.
-inline row_settings vivid() { return {}; }
+/// Consistent and vivid.
+inline row_settings vivid() { return detail::vivid_of<row_settings>(); }
 /// Per-Frame with independent noise, as the paper has it.
 inline row_settings alone() { return per_frame(paper()); }
 /// Per-Frame with one noise for all frames.
