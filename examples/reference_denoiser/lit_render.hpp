@@ -4,7 +4,7 @@
 #pragma once
 
 #include "palette.hpp"
-#include "random_draw.hpp"
+#include "../miniature/random_draw.hpp"
 #include "surface_style.hpp"
 
 #include <genrender/core/error.hpp>

@@ -2,7 +2,7 @@
 // The colours that surfaces are painted with, the words for them, and which pairs training never shows.
 #pragma once
 
-#include "random_draw.hpp"
+#include "../miniature/random_draw.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

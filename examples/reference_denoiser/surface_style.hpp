@@ -3,8 +3,8 @@
 #pragma once
 
 #include "palette.hpp"
-#include "random_draw.hpp"
-#include "surface_texture.hpp"
+#include "../miniature/random_draw.hpp"
+#include "../miniature/surface_texture.hpp"
 
 #include <genrender/core/error.hpp>
 #include <genrender/scene/mesh.hpp>

@@ -4,7 +4,7 @@
 
 #include "lit_render.hpp"
 #include "palette.hpp"
-#include "random_draw.hpp"
+#include "../miniature/random_draw.hpp"
 #include "surface_style.hpp"
 
 #include <genrender/core/index.hpp>
