@@ -296,7 +296,6 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/pipeline_files.hpp
     reference/prompt_vocabulary.hpp
     reference/reference_clip.hpp
-    reference/reference_embedder.hpp
     reference/reference_network.hpp
     reference/reference_weights.hpp
     reference/resampler.hpp
