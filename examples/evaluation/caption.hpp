@@ -43,14 +43,12 @@ inline std::array<compared_caption, 4> captions_of(scene_set set) {
                  {surface_pattern::bricks, world_colour::blue, world_colour::white, world_colour::yellow,
                   world_light::clouds}}};
     }
-    return {{{surface_pattern::stripes, world_colour::green, world_colour::white, world_colour::yellow,
-              world_light::clear_day},
-             {surface_pattern::checker, world_colour::red, world_colour::black, world_colour::green,
-              world_light::clouds},
-             {surface_pattern::dots, world_colour::yellow, world_colour::red, world_colour::green,
-              world_light::clear_day},
-             {surface_pattern::waves, world_colour::red, world_colour::white, world_colour::yellow,
-              world_light::clouds}}};
+    return {
+        {{surface_pattern::stripes, world_colour::green, world_colour::white, world_colour::yellow,
+          world_light::clear_day},
+         {surface_pattern::checker, world_colour::red, world_colour::black, world_colour::green, world_light::clouds},
+         {surface_pattern::dots, world_colour::yellow, world_colour::red, world_colour::green, world_light::clear_day},
+         {surface_pattern::waves, world_colour::red, world_colour::white, world_colour::yellow, world_light::clouds}}};
 }
 
 /// How a caption names what stands out in a scene.
@@ -93,8 +91,8 @@ struct recognition_question {
 inline recognition_question pattern_question(compared_caption const& caption) {
     recognition_question question{{}, static_cast<std::size_t>(caption.pattern)};
     for (std::size_t p = 0; p < miniature::pattern_names.size(); ++p) {
-        question.texts.push_back(
-            "a " + std::string(detail::pattern_word(static_cast<miniature::surface_pattern>(p))) + " ball");
+        question.texts.push_back("a " + std::string(detail::pattern_word(static_cast<miniature::surface_pattern>(p))) +
+                                 " ball");
     }
     return question;
 }

@@ -12,6 +12,7 @@
 #include <genrender/scene/animation.hpp>
 
 #include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
@@ -35,8 +36,9 @@ inline constexpr std::array<std::string_view, 3> development_names{"turning_thin
 /// The seed that development scenes are drawn by; training has 1, and 2 for what it holds out.
 inline constexpr std::uint64_t development_seed = 90210;
 
-/// One thing that turns on its place, two things that the camera goes around, or three and more that hop and turn: the
-/// first scene of that many things, on a ground and under a sky. A model of animation.
+/// One thing that tumbles in the air, two things that the camera goes around, or three and more that hop and turn: the
+/// first scene of that many things, on a ground and under a sky, without figures, whose limbs share one texture, so that
+/// their correspondences are not known. A model of animation.
 class development_world {
 public:
     /// Throws value_error for a name that is not in development_names.
@@ -49,7 +51,9 @@ public:
             world_ = miniature::draw_world(development_seed, k, miniature::picture_set::training);
             auto const& of = world_.description;
             auto const count = of.shapes.size();
-            if (of.has_ground && !of.is_room() && (count == wanted || (wanted == 3 && count > 3))) {
+            auto const has_figures =
+                std::find(of.shapes.begin(), of.shapes.end(), miniature::world_shape::figure) != of.shapes.end();
+            if (of.has_ground && !of.is_room() && !has_figures && (count == wanted || (wanted == 3 && count > 3))) {
                 break;
             }
         }
@@ -61,17 +65,22 @@ public:
         auto posed = world_.scene;
         auto const t = static_cast<float>(i.value);
         if (name_ == "circled_pair") {
-            posed.camera.view *= turned(world_.target, glm::radians(4.0f) * t);
+            posed.camera.view *= turned(world_.target, glm::radians(4.0f) * t, upright);
             return posed;
         }
         for (auto& thing : posed.objects) {
             if (thing.object.value == 0) {
                 continue;
             }
-            auto motion = turned(middle_of(thing.positions), glm::radians(6.0f) * t);
-            if (name_ == "hopping_things") {
+            // Not upright, or bands around a thing would stay where they are.
+            auto const axis = glm::normalize(glm::vec3(1, 2, 0.5f));
+            auto motion = turned(middle_of(thing.positions), glm::radians(6.0f) * t, axis);
+            if (name_ == "turning_thing") {
+                motion = glm::translate(glm::mat4(1), {0, 0.4f, 0}) * motion;
+            } else {
                 auto const side = thing.object.value % 2 == 0 ? 1.0f : -1.0f;
-                motion = glm::translate(glm::mat4(1), {side * 0.04f * t, 0.5f * std::abs(std::sin(0.35f * t)), 0}) * motion;
+                motion =
+                    glm::translate(glm::mat4(1), {side * 0.04f * t, 0.5f * std::abs(std::sin(0.35f * t)), 0}) * motion;
             }
             thing.positions = transformed(std::move(thing.positions), motion);
         }
@@ -96,9 +105,11 @@ public:
     }
 
 private:
-    /// A turn about the upright axis through a point.
-    static glm::mat4 turned(glm::vec3 at, float angle) {
-        return glm::translate(glm::rotate(glm::translate(glm::mat4(1), at), angle, glm::vec3(0, 1, 0)), -at);
+    static constexpr glm::vec3 upright{0, 1, 0};
+
+    /// A turn about an axis through a point.
+    static glm::mat4 turned(glm::vec3 at, float angle, glm::vec3 axis) {
+        return glm::translate(glm::rotate(glm::translate(glm::mat4(1), at), angle, axis), -at);
     }
 
     static glm::vec3 middle_of(std::vector<glm::vec3> const& positions) {

@@ -113,7 +113,8 @@ public:
         : told_(told), loop_(told.threads), pipeline_(pipeline_files(told.pipeline)),
           embedder_(reference_clip<float>::from_folder(told.embedder)), store_(told.out / "runs") {
         auto const nearness = tensor<float, 3>::from_shape({1, image_grid.height, image_grid.width});
-        auto const phi = pipeline_.network(pipeline_.conditioning(to_view(nearness), {.text = "", .guidance_scale = told.guidance}));
+        auto const phi =
+            pipeline_.network(pipeline_.conditioning(to_view(nearness), {.text = "", .guidance_scale = told.guidance}));
         sites_.assign(phi.sites().begin(), phi.sites().end());
         branches_ = static_cast<std::uint32_t>(phi.branches());
         networks_key_ = "library = " GENRENDER_VERSION_STRING "\nmeasures = " + std::to_string(measures_version) +
@@ -245,13 +246,11 @@ private:
             auto const make = [&](std::size_t j) {
                 auto const& planned = here[j];
                 auto const row = planned.row == rows.size() ? painted_row() : rows[planned.row];
-                auto const* const phi =
-                    row.method == row_method::painted ? nullptr : &networks.at(planned.caption);
+                auto const* const phi = row.method == row_method::painted ? nullptr : &networks.at(planned.caption);
                 make_run(of, planned, row, scene, phi, inner);
                 std::lock_guard const lock(mutex);
                 ++done;
-                auto const seconds =
-                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+                auto const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
                 auto const a_run = seconds / static_cast<double>(done);
                 std::printf("\r%s, %s: %zu of %zu, %.1f s a run, %.0f minutes left   ", of.name.c_str(),
                             scene.name.c_str(), done, missing.size(), a_run,
@@ -271,10 +270,10 @@ private:
 
     network network_for(evaluation_scene const& scene, std::size_t caption, any_loop const& loop) const {
         return pipeline_.network(
-            pipeline_.conditioning(to_view(scene.inverse_depth),
-                                   {.text = text_of(captions_of(scene.set)[caption], scene.subject),
-                                    .guidance_scale = told_.guidance},
-                                   loop),
+            pipeline_.conditioning(
+                to_view(scene.inverse_depth),
+                {.text = text_of(captions_of(scene.set)[caption], scene.subject), .guidance_scale = told_.guidance},
+                loop),
             loop);
     }
 
@@ -322,8 +321,8 @@ private:
     static latents<float> rendered(row_method method, network const& phi, evaluation_scene const& scene,
                                    row_settings const& settings, any_loop const& loop) {
         auto const with = [&](auto const& chosen) {
-            return render<std::remove_cvref_t<decltype(chosen)>>(
-                       phi, scene.uv(), {.settings = settings, .method = chosen, .loop = loop})
+            return render<std::remove_cvref_t<decltype(chosen)>>(phi, scene.uv(),
+                                                                 {.settings = settings, .method = chosen, .loop = loop})
                 .z;
         };
         return method == row_method::pix2video   ? with(pix2video{})
@@ -357,8 +356,9 @@ void evaluate(options const& told) {
 
 int main(int argc, char** argv) {
     options told;
-    CLI::App app("Renders scenes with every method, baseline and ablation, and measures them. What was made is kept in\n"
-                 "OUT/runs and not made again as long as all that it depends on stays the same.");
+    CLI::App app(
+        "Renders scenes with every method, baseline and ablation, and measures them. What was made is kept in\n"
+        "OUT/runs and not made again as long as all that it depends on stays the same.");
     app.add_option("--out", told.out, "Folder of tables, pictures and kept runs")->required();
     auto* const what = app.add_option_group("What", "methods and ablations unless told");
     what->add_flag("--quick", told.is_quick, "A look in minutes: fewer runs, frames and steps; no evidence");
@@ -383,7 +383,7 @@ int main(int argc, char** argv) {
     try {
         evaluate(told);
     } catch (std::exception const& failure) {
-        std::fprintf(stderr, "evaluate: %s\n", failure.what());
+        std::fprintf(stderr, "%s\n", failure.what());
         return 1;
     }
     return 0;

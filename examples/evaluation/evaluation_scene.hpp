@@ -77,9 +77,10 @@ private:
 inline scenes::any_animation compared_animation(std::string const& name, std::size_t frames) {
     auto const is_rotation = name == "camera_rotation";
     auto const whole = std::max<std::size_t>(frames, 48); // two seconds, the shortest that the balls take
-    auto scene = is_rotation ? scenes::any_animation(
-                                   scenes::camera_rotation(whole, glm::radians(5.0f) * static_cast<float>(whole)))
-                             : scenes::make_scene(name, whole);
+    auto scene =
+        is_rotation
+            ? scenes::any_animation(scenes::camera_rotation(whole, glm::radians(5.0f) * static_cast<float>(whole)))
+            : scenes::make_scene(name, whole);
     auto const share = is_rotation ? 0.6f : name == "bouncing_balls" ? 0.5f : 0.8f;
     return scenes::any_animation(first_frames(scenes::any_animation(close_up(std::move(scene), share)), frames));
 }
@@ -192,8 +193,12 @@ inline tensor<float, 4> painted_frames(evaluation_scene const& scene, compared_c
     auto const first_shade = miniature::draw_shade(draw, caption.first);
     auto const second_shade = miniature::draw_shade(draw, caption.second);
     for (auto const& posed : first.objects) {
-        miniature::paint_recipe recipe{caption.pattern, miniature::surface_material::smooth,
-                                       miniature::pattern_layout::solid, first_shade, second_shade, feature};
+        miniature::paint_recipe recipe{caption.pattern,
+                                       miniature::surface_material::smooth,
+                                       miniature::pattern_layout::solid,
+                                       first_shade,
+                                       second_shade,
+                                       feature};
         if (posed.object.value < scene.layouts.size()) {
             recipe.layout = scene.layouts[posed.object.value];
         }

@@ -27,11 +27,11 @@ enum class row_method { painted, generative_rendering, pix2video, tokenflow };
 
 /// One row of the tables: a preset and what is changed of it.
 struct compared_row {
-    std::string name;                          ///< as the tables have it
-    std::string group;                         ///< render, method, noise, ablation, texels or development
-    row_method method;                         ///< what denoises its frames
-    row_settings (*preset)() = nullptr;        ///< the settings that it begins with
-    void (*change)(row_settings&) = nullptr;   ///< what is different; none: nothing
+    std::string name;                        ///< as the tables have it
+    std::string group;                       ///< render, method, noise, ablation, texels or development
+    row_method method;                       ///< what denoises its frames
+    row_settings (*preset)() = nullptr;      ///< the settings that it begins with
+    void (*change)(row_settings&) = nullptr; ///< what is different; none: nothing
 };
 
 /// What all rows of a run share, whatever their settings.
@@ -166,12 +166,14 @@ inline std::vector<compared_row> compared_rows() {
         {"vivid, nearest texel, T = 64", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 64>},
         {"vivid, nearest texel, T = 256", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 256>},
         {"vivid, nearest texel, T = 1024", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 1024>},
+        {"vivid, nearest texel, T = 4096", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 4096>},
         {"vivid, nearest texel, T matched", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 0>},
         {"vivid, bilinear texels, T matched", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::bilinear_texel, 0>},
 
         {"vivid, features by texels, T = 64", "texels", generative_rendering, vivid, texels_of<64>},
         {"vivid, features by texels, T = 256", "texels", generative_rendering, vivid, texels_of<256>},
         {"vivid, features by texels, T = 1024", "texels", generative_rendering, vivid, texels_of<1024>},
+        {"vivid, features by texels, T = 4096", "texels", generative_rendering, vivid, texels_of<4096>},
         {"vivid, features by texels, T matched", "texels", generative_rendering, vivid, texels_of<0>},
 
         {"no post-attention", "development", generative_rendering, vivid, [](s& x) { x.injection.post_attention = false; }},

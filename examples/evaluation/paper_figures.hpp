@@ -10,10 +10,10 @@ namespace genrender::examples {
 
 /// A row of the paper's tables: CLIP embeddings, Stable Diffusion 1.5, scenes and prompts of its own.
 struct paper_row {
-    std::string_view method;               ///< a row of compared_rows; Gen1 is proprietary and quoted alone
-    std::string_view name;                 ///< as tables have it
-    std::array<double, 5> consistency{};   ///< frame consistency at `intervals` (table 2; the first is table 1's)
-    std::optional<double> fidelity{};      ///< prompt fidelity (table 1); none for what the paper does not have
+    std::string_view method;             ///< a row of compared_rows; Gen1 is proprietary and quoted alone
+    std::string_view name;               ///< as tables have it
+    std::array<double, 5> consistency{}; ///< frame consistency at `intervals` (table 2; the first is table 1's)
+    std::optional<double> fidelity{};    ///< prompt fidelity (table 1); none for what the paper does not have
 };
 
 /// Tables 1 and 2, and vivid beside them.

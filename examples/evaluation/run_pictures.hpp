@@ -30,9 +30,9 @@ inline void write_moments(std::filesystem::path const& path, std::vector<shown_r
             cells.push_back(run.frames[columns > 1 ? c * (run.frames.size() - 1) / (columns - 1) : 0]);
             // The first two frames of a row carry its name: before a comma and after it.
             auto const comma = std::min(run.label.find(", "), run.label.size());
-            texts.push_back(c == 0                                 ? run.label.substr(0, comma)
+            texts.push_back(c == 0                               ? run.label.substr(0, comma)
                             : c == 1 && comma < run.label.size() ? run.label.substr(comma + 2)
-                                                                   : "");
+                                                                 : "");
         }
     }
     write_png(path, contact_sheet(cells, {.columns = columns, .labels = texts}));

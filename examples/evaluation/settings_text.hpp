@@ -65,9 +65,9 @@ private:
 inline std::string settings_text(row_settings const& settings, std::vector<attention_site> const& sites,
                                  std::uint32_t branches) {
     detail::settings_writer write;
-    auto const& [steps, sigma_min, sigma_max, rho, sampler, noise, keyframes, correspondence, normalization, layers, alpha,
-                 injection, first_fill_share, average, window_begin, window_end, keyframe_storage, reuses_keyframes,
-                 frames_per_call, fills_last_call, calls_at_once] = settings;
+    auto const& [steps, sigma_min, sigma_max, rho, sampler, noise, keyframes, correspondence, normalization, layers,
+                 alpha, injection, first_fill_share, average, window_begin, window_end, keyframe_storage,
+                 reuses_keyframes, frames_per_call, fills_last_call, calls_at_once] = settings;
     static_cast<void>(reuses_keyframes); // frames are the same to the bit
     static_cast<void>(frames_per_call);
     static_cast<void>(fills_last_call);

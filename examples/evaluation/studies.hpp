@@ -69,8 +69,12 @@ inline std::vector<study> full_studies() {
     methods.seeds = 3;
     auto ablations = ablations_study();
     ablations.pairs = pairing::all;
-    study noise{"noise", "Noise", {"noise"}, {"Per-Frame, independent noise", "Per-Frame, UV noise", "vivid"},
-                scene_set::held_out, pairing::each};
+    study noise{"noise",
+                "Noise",
+                {"noise"},
+                {"Per-Frame, independent noise", "Per-Frame, UV noise", "vivid"},
+                scene_set::held_out,
+                pairing::each};
     study texels{"texels", "Texels", {"texels"}, {"vivid"}, scene_set::held_out, pairing::each};
     study frames{"frames_48", "48 frames", {"method"}, {}, scene_set::held_out, pairing::each};
     frames.captions = 3;
@@ -83,7 +87,9 @@ inline std::vector<study> full_studies() {
 
 /// What settings are chosen by.
 inline std::vector<study> development_studies() {
-    study variants{"development", "Variants of vivid on the development scenes", {"development"},
+    study variants{"development",
+                   "Variants of vivid on the development scenes",
+                   {"development"},
                    {"Per-Frame, UV noise", "TokenFlow*, fixed noise", "TokenFlow*, UV noise", "paper", "vivid"},
                    scene_set::development};
     variants.captions = 2;
@@ -116,7 +122,9 @@ struct planned_run {
 };
 
 /// The scenes of a study.
-inline std::vector<std::string> scenes_of(study const& of) { return of.scenes.empty() ? scene_names(of.set) : of.scenes; }
+inline std::vector<std::string> scenes_of(study const& of) {
+    return of.scenes.empty() ? scene_names(of.set) : of.scenes;
+}
 
 /// The rows of a study: those that are named, then those of the groups. Throws value_error for a name that no row has.
 inline std::vector<compared_row> rows_of(study const& of) {

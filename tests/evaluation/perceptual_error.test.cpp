@@ -88,8 +88,8 @@ TEST_SUITE("evaluation/perceptual_error") {
                              "perceptual_errors: features is [3, 2, 1, 4], expected [2, 2, 1, 4]", shape_error);
         CHECK_THROWS_WITH_AS(perceptual_errors(stack<float, 4>({2, 2, 0, 4}).view(), sliding_features{}, next),
                              "perceptual_errors: features is [2, 2, 0, 4], expected [2, 2, 1, 4]", shape_error);
-        CHECK_THROWS_WITH_AS(perceptual_errors(stack<float, 4>({2, 2, 1, 4}).view(), sliding_features{},
-                                               std::array<std::size_t, 1>{0}),
-                             "perceptual_errors: interval is 0, expected at least 1", value_error);
+        CHECK_THROWS_WITH_AS(
+            perceptual_errors(stack<float, 4>({2, 2, 1, 4}).view(), sliding_features{}, std::array<std::size_t, 1>{0}),
+            "perceptual_errors: interval is 0, expected at least 1", value_error);
     }
 }

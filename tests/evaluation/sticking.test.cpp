@@ -56,7 +56,8 @@ TEST_SUITE("evaluation/sticking") {
         CHECK(found.at_place == doctest::Approx(std::sqrt((16 + 64 + 144 + 256) / 4.0)));
     }
 
-    TEST_CASE("paint that stays on the screen changes nowhere at its place and has no ratio, nearly such paint a high one") {
+    TEST_CASE(
+        "paint that stays on the screen changes nowhere at its place and has no ratio, nearly such paint a high one") {
         auto images = random_stack<double, 4>({2, 3, 1, 6}, 4);
         for (std::size_t c = 0; c < 3; ++c) {
             for (std::size_t p = 0; p < 6; ++p) {
@@ -82,7 +83,8 @@ TEST_SUITE("evaluation/sticking") {
         CHECK(sticking(images.view(), moving_strip{3, 6, 1}, next, every_object{}, 1)[0].pairs == 10);
     }
 
-    TEST_CASE("places that another object fills in the earlier frame do not count, nor do objects that are not chosen") {
+    TEST_CASE(
+        "places that another object fills in the earlier frame do not count, nor do objects that are not chosen") {
         auto const images = random_stack<float, 4>({2, 1, 1, 6}, 2);
         // Frame 0 shows points 0 ... 5, frame 1 points 2 ... 7; of places 0 ... 3, which correspond, 0 and 1 show points
         // 0 and 1 in frame 0, which are of another object than 2 and 3.

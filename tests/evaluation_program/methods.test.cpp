@@ -18,7 +18,7 @@ TEST_SUITE("evaluation_program/methods") {
         std::map<std::string, std::size_t> rows;
         for (auto const& row : compared_rows()) {
             CHECK_MESSAGE(names.insert(row.group + ": " + row.name).second, row.name);
-            CHECK(row.preset != nullptr);
+            CHECK((row.preset != nullptr));
             ++rows[row.group];
         }
         CHECK(rows["method"] == 8);
@@ -41,7 +41,8 @@ TEST_SUITE("evaluation_program/methods") {
         CHECK(settings.correspondence.kind == correspondence_kind::texel_grid);
     }
 
-    TEST_CASE("baselines have the paper's noise or ours, and no normalisation; frames alone have nothing of the others") {
+    TEST_CASE(
+        "baselines have the paper's noise or ours, and no normalisation; frames alone have nothing of the others") {
         CHECK(baseline_fixed().noise.kind == noise_kind::fixed);
         CHECK(baseline_uv().noise.kind == noise_kind::uv);
         CHECK(baseline_uv().noise.reading == vivid().noise.reading);

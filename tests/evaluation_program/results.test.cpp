@@ -38,7 +38,7 @@ TEST_SUITE("evaluation_program/results") {
               "| Method | RMSE |\n|---|---|\n| theirs | 0.4000 |\n| ours | 0.2000 ± 0.1000 |\n");
         CHECK(difference_table(three_runs(), "ours", methods, std::vector<table_column>{{"error", "RMSE"}}) ==
               "| ours minus | RMSE |\n|---|---|\n| theirs | -0.3000 |\n");
-        CHECK(detail::methods_in_order(three_runs()) == std::vector<std::string>{"ours", "theirs"});
+        CHECK(examples::detail::methods_in_order(three_runs()) == std::vector<std::string>{"ours", "theirs"});
     }
 
     TEST_CASE("a table of variants has the base in thousandths and what each variant has more than it") {

@@ -24,7 +24,8 @@ struct interval_sticking {
     std::size_t pairs = 0;    ///< of moving pixels
     double along_surface = 0; ///< root of the mean squared difference between pixels of one surface point
     double at_place = 0;      ///< the same between the same places of the screen
-    std::optional<double> ratio; ///< along_surface / at_place; none without pairs, or where nothing changes at the places
+    std::optional<double>
+        ratio; ///< along_surface / at_place; none without pairs, or where nothing changes at the places
 };
 
 /// e(surface) / e(screen) for each interval, over pairs of pixels q of frame i and p of frame j = i + interval that show

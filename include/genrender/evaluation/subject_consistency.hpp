@@ -22,7 +22,8 @@ std::optional<double> subject_consistency(strided_view<Real, 2> embeddings) {
     }
     double sum = 0;
     for (std::size_t t = 1; t < embeddings.extent(0); ++t) {
-        sum += (cosine_similarity(embeddings[0], embeddings[t]) + cosine_similarity(embeddings[t - 1], embeddings[t])) / 2;
+        sum +=
+            (cosine_similarity(embeddings[0], embeddings[t]) + cosine_similarity(embeddings[t - 1], embeddings[t])) / 2;
     }
     return sum / static_cast<double>(embeddings.extent(0) - 1);
 }
