@@ -239,11 +239,15 @@ genrender_component(evaluation HEADERS
     evaluation/frame_consistency.hpp
     evaluation/image_text_embedder.hpp
     evaluation/mean_and_error.hpp
+    evaluation/perceptual_error.hpp
     evaluation/pixel_correspondence.hpp
     evaluation/pixel_objects.hpp
     evaluation/prompt_fidelity.hpp
     evaluation/recognition.hpp
     evaluation/sharpness.hpp
+    evaluation/sticking.hpp
+    evaluation/subject_consistency.hpp
+    evaluation/temporal_flicker.hpp
     evaluation/time_slice.hpp
     testing/embedder_laws.hpp)
 
@@ -299,7 +303,6 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/pipeline_files.hpp
     reference/prompt_vocabulary.hpp
     reference/reference_clip.hpp
-    reference/reference_embedder.hpp
     reference/reference_network.hpp
     reference/reference_weights.hpp
     reference/resampler.hpp

@@ -8,8 +8,10 @@ usage() {
 sh cmake/quickstart.sh WHAT
 
   demo      render an animation with the built-in network, and the same frame by frame   (build/demo_output)
-  evaluate  the paper's tables on the built-in network: every method, baseline and ablation (build/evaluation);
-            with --quick one prompt and one seed, with other options those of the program evaluate
+  evaluate  the paper's tables on the built-in network: every method, baseline and ablation, in 40 minutes on two
+            cores (build/evaluation); with --quick a look in six, with --full three seeds and every option in hours,
+            with --development variants on scenes that settings may be chosen by, with --long 240 frames. What is done
+            is kept: after a stop, or with more asked for, the rest is made. Other options: evaluate --help
   tables    write the tables that evaluate and bench have left in build/ into the pages of docs/ that show them
   test      every test but those that are slow by nature: with g++, with clang++ and AddressSanitizer, and those that
             start threads with ThreadSanitizer
@@ -186,11 +188,17 @@ evaluate() {
     workflow evaluate
     say "Rendering and measuring"
     build/evaluate/examples/evaluate --out build/evaluation "$@"
-    gnuplot -e "folder='build/evaluation'" examples/evaluation/consistency.gnuplot
-    say "Matching pixels with and without textures"
-    build/evaluate/examples/blender_maps walking_figure build/evaluation/blender_sequence 24 512
-    build/evaluate/examples/correspondence_tables --maps build/evaluation/blender_sequence \
-        --out build/evaluation/correspondence.md
+    if [ -f build/evaluation/consistency.csv ]; then
+        gnuplot -e "folder='build/evaluation'" examples/evaluation/consistency.gnuplot
+    fi
+    case "$*" in
+        "" | *--full*)
+            say "Matching pixels with and without textures"
+            build/evaluate/examples/blender_maps walking_figure build/evaluation/blender_sequence 24 512
+            build/evaluate/examples/correspondence_tables --maps build/evaluation/blender_sequence \
+                --out build/evaluation/correspondence.md
+            ;;
+    esac
     say "Tables, contact sheets, slices over time and the plot"
     ls build/evaluation
 }

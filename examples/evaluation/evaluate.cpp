@@ -1,38 +1,46 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 4] The paper's comparison on the reference denoiser, with true correspondences: tables, pictures, a plot.
+// [GR sec. 4] The paper's comparison on the miniature Stable Diffusion, with true correspondences: tables and pictures.
+#include "caption.hpp"
 #include "evaluation_scene.hpp"
 #include "measures.hpp"
 #include "methods.hpp"
-#include "paper_figures.hpp"
 #include "results.hpp"
+#include "run_pictures.hpp"
+#include "run_store.hpp"
+#include "settings_text.hpp"
+#include "studies.hpp"
+#include "tables.hpp"
 
-#include <examples/support/contact_sheet.hpp>
 #include <examples/support/output_file.hpp>
-#include <examples/support/pictures.hpp>
-#include <examples/support/render_output.hpp>
+#include <examples/support/resident_memory.hpp>
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/parallel.hpp>
-#include <genrender/evaluation/time_slice.hpp>
-#include <genrender/reference/reference_embedder.hpp>
-#include <genrender/reference/reference_network.hpp>
+#include <genrender/reference/pipeline_files.hpp>
+#include <genrender/reference/reference_clip.hpp>
+#include <genrender/reference/stable_diffusion.hpp>
+#include <genrender/version.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 using namespace genrender;
-
 using namespace genrender::reference;
 using namespace genrender::examples;
 
@@ -40,317 +48,357 @@ namespace {
 
 using network = reference_network<float>;
 
+constexpr grid_extents image_grid{128, 128}; // what denoiser and embedder were trained on
+
 struct options {
     std::filesystem::path out;
-    std::filesystem::path weights = GENRENDER_REFERENCE_DENOISER "/weights";
-    std::filesystem::path embedder = GENRENDER_REFERENCE_DENOISER "/embedder";
-    std::vector<std::string> scenes{scenes::names.begin(), scenes::names.end()};
-    std::vector<std::string> prompts{"stripes", "checker", "dots"};
-    std::size_t seeds = 3;
-    std::size_t frames = 24;
-    std::size_t steps = 10;
-    std::size_t keyframes = 4;
-    float alpha = 0.7f;
-    std::vector<std::string> groups = paper_groups();
-    std::vector<std::string> methods;
-    std::uint32_t size = 64;
+    std::filesystem::path pipeline = GENRENDER_MINIATURE "/weights";
+    std::filesystem::path embedder = GENRENDER_MINIATURE "/embedder";
+    double guidance = 3;
     std::size_t threads = 0;
+    bool is_quick = false, is_full = false, is_development = false, is_long = false, only_lists = false;
+    std::vector<std::string> studies, rows, scenes;
+    std::optional<std::size_t> captions, seeds, frames, steps;
 };
 
-/// One animation to make and measure.
-struct job {
-    std::size_t prompt;
-    std::uint64_t seed;
-    std::size_t method; ///< in the list of methods; their number stands for the painted render
-};
-
-/// Whether the pictures show a job: those of the first prompt and seed.
-bool is_shown(job const& job) { return job.prompt == 0 && job.seed == 0; }
-
-/// What a job gave, with its frames if the pictures show it.
-struct outcome {
-    measures figures;
-    tensor<float, 4> images = tensor<float, 4>::from_shape({0, 3, 1, 1});
-};
-
-std::string label_of(compared_method<network> const& method) { return method.name + ", " + method.noise + " noise"; }
-
-/// The methods of the groups that are told, and of those the ones whose names are told, if any.
-std::vector<compared_method<network>> chosen_methods(options const& told) {
-    auto methods = compared_methods<network>();
+/// The studies that the options ask for.
+std::vector<study> chosen_studies(options const& told) {
+    auto chosen = told.is_quick         ? quick_studies()
+                  : told.is_full        ? full_studies()
+                  : told.is_development ? development_studies()
+                  : told.is_long        ? long_studies()
+                                        : usual_studies();
     auto const is_among = [](std::string const& name, std::vector<std::string> const& names) {
-        return std::find(names.begin(), names.end(), name) != names.end();
+        return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
     };
-    std::erase_if(methods, [&](auto const& method) {
-        return !is_among(method.group, told.groups) || (!told.methods.empty() && !is_among(method.name, told.methods));
-    });
-    require_value(!methods.empty(), "evaluate", "--groups or --methods",
-                  told.methods.empty() ? told.groups.front() : told.methods.front(), "names as --help tells");
-    return methods;
-}
-
-/// Settings that all methods share. None of them was chosen by looking at these scenes.
-render_settings<float> shared_settings(options const& told, std::uint64_t seed) {
-    render_settings<float> settings;
-    settings.steps = told.steps;
-    settings.sampler = sampler_kind::dpmpp_2m;
-    settings.noise.seed = seed;
-    settings.keyframes.seed = seed;
-    settings.keyframes.count = std::min(told.keyframes, told.frames);
-    settings.alpha = [alpha = told.alpha](std::size_t, attention_site const&) { return alpha; };
-    return settings;
-}
-
-/// The styles as texts: what the embedder has to choose from.
-std::vector<std::string> style_texts() { return {style_words.begin(), style_words.end()}; }
-
-std::size_t style_number(std::string const& prompt) {
-    auto const found = std::find(style_words.begin(), style_words.end(), prompt);
-    require_value(found != style_words.end(), "evaluate", "--prompts", prompt, "styles of the reference denoiser");
-    return static_cast<std::size_t>(found - style_words.begin());
-}
-
-/// All runs of one scene, in the order of the jobs.
-std::vector<outcome> run_scene(options const& told, evaluation_scene const& scene, std::vector<job> const& jobs,
-                               std::vector<compared_method<network>> const& methods,
-                               reference_embedder<float> const& embedder, threaded_loop const& loop) {
-    std::vector<network> phis;
-    for (auto const& prompt : told.prompts) {
-        phis.push_back(network::from_folder(told.weights, to_view(scene.inverse_depth), prompt));
-    }
-    auto const texts = style_texts();
-    std::vector<outcome> outcomes(jobs.size());
-    std::mutex mutex;
-    std::size_t done = 0;
-    loop(jobs.size(), [&](std::size_t j) {
-        auto const& job = jobs[j];
-        auto const style = style_number(told.prompts[job.prompt]);
-        auto images =
-            job.method == methods.size()
-                ? painted_frames(scene, static_cast<surface_style>(style), job.seed, sequential_loop{})
-                : decoded(methods[job.method].run(phis[job.prompt], scene.uv(), shared_settings(told, job.seed)));
-        outcomes[j].figures = measures_of(to_view(std::as_const(images)), scene, embedder, texts, style);
-        if (is_shown(job)) {
-            outcomes[j].images = std::move(images);
-        }
-        std::lock_guard const lock(mutex);
-        std::printf("\r%s: %zu of %zu", scene.name.c_str(), ++done, jobs.size());
-        std::fflush(stdout);
-    });
-    std::printf("\n");
-    return outcomes;
-}
-
-/// Frames of one prompt and seed, a row for each method, eight moments of the animation.
-void write_contact_sheet(std::filesystem::path const& path, std::vector<std::string> const& labels,
-                         std::vector<tensor<float, 4> const*> const& runs) {
-    constexpr std::size_t columns = 8;
-    std::vector<rgb8_image> cells;
-    std::vector<std::string> texts;
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-        auto const frames = runs[r]->shape()[0];
-        for (std::size_t c = 0; c < columns; ++c) {
-            auto const i = c * (frames - 1) / (columns - 1);
-            cells.push_back(rgb_picture(to_view(*runs[r])[i]));
-            // The first two frames of a row carry its name and its noise.
-            auto const comma = std::min(labels[r].rfind(", "), labels[r].size());
-            texts.push_back(c == 0                               ? labels[r].substr(0, comma)
-                            : c == 1 && comma < labels[r].size() ? labels[r].substr(comma + 2)
-                                                                 : "");
-        }
-    }
-    write_png(path, contact_sheet(cells, {.columns = columns, .enlargement = 2, .labels = texts}));
-}
-
-/// One image row over time for each method: time runs downwards.
-void write_time_slices(std::filesystem::path const& path, std::vector<std::string> const& labels,
-                       std::vector<tensor<float, 4> const*> const& runs, std::size_t row) {
-    std::vector<rgb8_image> slices;
-    for (auto const* const run : runs) {
-        auto const slice = time_slice(to_view(*run), row);
-        rgb8_image picture({slice.extent(0), slice.extent(2)}, {0, 0, 0});
-        for (std::size_t i = 0; i < slice.extent(0); ++i) {
-            for (std::size_t column = 0; column < slice.extent(2); ++column) {
-                picture.set(i, column,
-                            {to_byte(slice(i, 0, column)), to_byte(slice(i, 1, column)), to_byte(slice(i, 2, column))});
+    std::erase_if(chosen, [&](auto const& each) { return !is_among(each.name, told.studies); });
+    require_value(!chosen.empty(), "evaluate", "--studies", told.studies.empty() ? "" : told.studies.front(),
+                  "names as --list tells");
+    for (auto& each : chosen) {
+        std::vector<std::string> rows;
+        for (auto const& row : rows_of(each)) {
+            if (is_among(row.name, told.rows)) {
+                rows.push_back(row.name);
             }
         }
-        slices.push_back(std::move(picture));
+        require_value(!rows.empty(), "evaluate", "--rows", told.rows.empty() ? "" : told.rows.front(),
+                      ("rows of the study " + each.name + ", as --list tells").c_str());
+        each.rows = std::move(rows);
+        each.groups.clear();
+        each.scenes = told.scenes.empty() ? each.scenes : told.scenes;
+        for (auto const& scene : each.scenes) {
+            auto const names = scene_names(each.set);
+            require_value(is_among(scene, names), "evaluate", "--scenes", scene,
+                          ("a scene of the set, say " + names.front()).c_str());
+        }
+        each.captions = told.captions.value_or(each.captions);
+        require_value(each.captions > 0 && each.captions <= captions_of(each.set).size(), "evaluate", "--captions",
+                      each.captions, "1 to 4");
+        each.seeds = told.seeds.value_or(each.seeds);
+        each.frames = told.frames.value_or(each.frames);
+        each.steps = told.steps.value_or(each.steps);
     }
-    write_png(path, contact_sheet(slices, {.columns = 3, .enlargement = 4, .labels = labels}));
+    return chosen;
 }
 
-/// The paper's tables 1 and 2 with what was measured beside what it reports.
-std::string paper_tables(std::vector<run_figures> const& runs) {
-    std::ostringstream text;
-    text
-        << "| Method | Frame consistency | paper | Prompt fidelity | paper | Recognised |\n|---|---|---|---|---|---|\n";
-    for (auto const& row : paper_rows) {
-        auto const figure = [&](char const* measure) {
-            return figure_text(figure_of(runs, std::string(row.method), measure));
+/// The seed of noise, keyframes and paint of a set's run. Training draws scenes by 1 and 2.
+std::uint64_t seed_of(scene_set set, std::uint64_t number) {
+    return (set == scene_set::development ? 2000 : 1000) + number;
+}
+
+/// Networks, measures and what is kept: what all studies share.
+class comparison {
+public:
+    explicit comparison(options const& told)
+        : told_(told), loop_(told.threads), pipeline_(pipeline_files(told.pipeline)),
+          embedder_(reference_clip<float>::from_folder(told.embedder)), store_(told.out / "runs") {
+        auto const nearness = tensor<float, 3>::from_shape({1, image_grid.height, image_grid.width});
+        auto const phi =
+            pipeline_.network(pipeline_.conditioning(to_view(nearness), {.text = "", .guidance_scale = told.guidance}));
+        sites_.assign(phi.sites().begin(), phi.sites().end());
+        branches_ = static_cast<std::uint32_t>(phi.branches());
+        networks_key_ = "library = " GENRENDER_VERSION_STRING "\nmeasures = " + std::to_string(measures_version) +
+                        "\npipeline = " + digest_of(told.pipeline) + "\nembedder = " + digest_of(told.embedder) +
+                        "\nguidance = " + std::to_string(told.guidance) + '\n';
+    }
+
+    /// Makes what is not kept of a study, and writes its tables and pictures.
+    void run(study const& of) {
+        make_missing(of);
+        auto const rows = rows_of(of);
+        std::vector<run_figures> figures;
+        auto const scenes = scenes_of(of);
+        std::map<std::string, std::vector<shown_run>> shown;
+        std::map<std::size_t, std::size_t> first_caption; // of a scene
+        for (auto const& planned : runs_of(of)) {
+            auto const is_painted = planned.row == rows.size();
+            auto const row = is_painted ? painted_row() : rows[planned.row];
+            auto const key = key_of(of, planned, row);
+            auto kept = store_.find(key);
+            if (!kept) {
+                throw file_error("evaluate: a run of " + row.name + " is not kept, expected what was just made");
+            }
+            auto const& scene = scenes[planned.scene];
+            figures.push_back({row.name, row.group, scene,
+                               text_of(captions_of(of.set)[planned.caption], subject_of(scene, of.set)), planned.seed,
+                               std::move(kept->figures)});
+            auto const is_first = first_caption.try_emplace(planned.scene, planned.caption).first->second;
+            if (planned.seed == 0 && planned.caption == is_first) {
+                shown[scene].push_back({row.name, store_.frames(key, of.frames).value()});
+            }
+        }
+        for (auto const& [scene, runs] : shown) {
+            write_moments(told_.out / (of.name + "_" + scene + ".png"), runs);
+            write_time_slices(told_.out / (of.name + "_" + scene + "_over_time.png"), runs, image_grid.height * 5 / 8,
+                              std::max<std::size_t>(1, 64 / of.frames));
+        }
+        write_text(told_.out / (of.name + "_runs.csv"), runs_csv(figures));
+        write_text(told_.out / (of.name + ".csv"), means_csv(figures));
+        if (of.name == methods_study().name) {
+            write_text(told_.out / "consistency.csv", consistency_csv(figures));
+        }
+        auto const tables = study_tables(of, figures);
+        write_text(told_.out / (of.name + ".md"), tables);
+        std::printf("\n%s", tables.c_str());
+    }
+
+    /// Says what a study has, and how much of it is kept.
+    void list(study const& of) const {
+        auto const rows = rows_of(of);
+        auto const runs = runs_of(of);
+        std::size_t kept = 0;
+        for (auto const& planned : runs) {
+            kept += is_kept(of, planned, rows) ? 1U : 0U;
+        }
+        std::printf("%s: %zu runs of %zu frames and %zu steps, %zu of them kept\n", of.name.c_str(), runs.size(),
+                    of.frames, of.steps, kept);
+        for (auto const& scene : scenes_of(of)) {
+            std::printf("  scene \"%s\"\n", scene.c_str());
+        }
+        for (auto const& row : rows) {
+            std::printf("  row \"%s\"\n", row.name.c_str());
+        }
+    }
+
+    /// The most resident memory that the program has held, bytes; 0 where the system does not tell.
+    std::int64_t peak() {
+        note_peak();
+        return peak_;
+    }
+
+private:
+    /// Asked for before the system's own mark is lowered (resident_growth).
+    void note_peak() {
+        std::lock_guard const lock(peak_mutex_);
+        peak_ = std::max(peak_, memory_status("VmHWM").value_or(0));
+    }
+
+    row_settings settings_of_run(study const& of, planned_run const& planned, compared_row const& row) const {
+        auto const schedule = pipeline_.schedule();
+        return settings_of(row, {.steps = of.steps,
+                                 .keyframes = std::min<std::size_t>(4, of.frames),
+                                 .sigma_min = static_cast<float>(schedule.sigma_min()),
+                                 .sigma_max = static_cast<float>(schedule.sigma_max()),
+                                 .seed = seed_of(of.set, planned.seed)});
+    }
+
+    /// All that a run's figures depend on.
+    std::string key_of(study const& of, planned_run const& planned, compared_row const& row) const {
+        auto const caption = captions_of(of.set)[planned.caption];
+        auto const scene = scenes_of(of)[planned.scene];
+        std::ostringstream key;
+        key << networks_key_ << "scene = " << scene << (of.set == scene_set::development ? ", development" : "")
+            << "\nframes = " << of.frames << "\nmaps = " << of.map_pixels << "\nis_alone = " << of.is_alone
+            << "\nintervals =";
+        for (auto const interval : of.apart) {
+            key << ' ' << interval;
+        }
+        key << "\nprompt = " << text_of(caption, subject_of(scene, of.set)) << "\nmethod = " << int(row.method) << '\n';
+        if (row.method == row_method::painted) {
+            key << "seed = " << seed_of(of.set, planned.seed) << '\n';
+        } else {
+            key << settings_text(settings_of_run(of, planned, row), sites_, branches_);
+        }
+        return key.str();
+    }
+
+    bool is_kept(study const& of, planned_run const& planned, std::vector<compared_row> const& rows) const {
+        auto const key = key_of(of, planned, planned.row == rows.size() ? painted_row() : rows[planned.row]);
+        return store_.find(key) && (planned.seed > 0 || store_.frames(key, of.frames));
+    }
+
+    void make_missing(study const& of) {
+        auto const rows = rows_of(of);
+        std::vector<planned_run> missing;
+        for (auto const& planned : runs_of(of)) {
+            if (!is_kept(of, planned, rows)) {
+                missing.push_back(planned);
+            }
+        }
+        std::size_t done = 0;
+        auto const start = std::chrono::steady_clock::now();
+        auto const names = scenes_of(of);
+        for (std::size_t s = 0; s < names.size(); ++s) {
+            std::vector<planned_run> here;
+            std::copy_if(missing.begin(), missing.end(), std::back_inserter(here),
+                         [s](auto const& planned) { return planned.scene == s; });
+            if (here.empty()) {
+                continue;
+            }
+            auto const scene = make_evaluation_scene(names[s], of.set, of.frames, image_grid, loop_, of.map_pixels);
+            // Runs side by side take one thread each.
+            auto const inner = of.is_alone ? any_loop(loop_) : any_loop(sequential_loop{});
+            std::map<std::size_t, network> networks;
+            for (auto const& planned : here) {
+                if (planned.row < rows.size() && !networks.contains(planned.caption)) {
+                    networks.emplace(planned.caption, network_for(scene, planned.caption, inner));
+                }
+            }
+            std::mutex mutex;
+            auto const make = [&](std::size_t j) {
+                auto const& planned = here[j];
+                auto const row = planned.row == rows.size() ? painted_row() : rows[planned.row];
+                auto const* const phi = row.method == row_method::painted ? nullptr : &networks.at(planned.caption);
+                make_run(of, planned, row, scene, phi, inner);
+                std::lock_guard const lock(mutex);
+                ++done;
+                auto const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+                auto const a_run = seconds / static_cast<double>(done);
+                std::printf("\r%s, %s: %zu of %zu, %.1f s a run, %.0f minutes left   ", of.name.c_str(),
+                            scene.name.c_str(), done, missing.size(), a_run,
+                            a_run * static_cast<double>(missing.size() - done) / 60);
+                std::fflush(stdout);
+            };
+            if (of.is_alone) {
+                for (std::size_t j = 0; j < here.size(); ++j) {
+                    make(j);
+                }
+            } else {
+                loop_(here.size(), make);
+            }
+        }
+        std::printf("\n");
+    }
+
+    network network_for(evaluation_scene const& scene, std::size_t caption, any_loop const& loop) const {
+        return pipeline_.network(
+            pipeline_.conditioning(
+                to_view(scene.inverse_depth),
+                {.text = text_of(captions_of(scene.set)[caption], scene.subject), .guidance_scale = told_.guidance},
+                loop),
+            loop);
+    }
+
+    void make_run(study const& of, planned_run const& planned, compared_row const& row, evaluation_scene const& scene,
+                  network const* phi, any_loop const& loop) {
+        auto const caption = captions_of(of.set)[planned.caption];
+        kept_run made;
+        auto images = tensor<float, 4>::from_shape({0, 3, 1, 1});
+        std::optional<std::int64_t> grown;
+        if (row.method == row_method::painted) {
+            images = painted_frames(scene, caption, seed_of(of.set, planned.seed), loop);
+        } else {
+            auto settings = settings_of_run(of, planned, row);
+            settings.noise.rays = scene.rays;
+            auto const start = std::chrono::steady_clock::now();
+            auto z = latents<float>();
+            auto const render_frames = [&] { z = rendered(row.method, *phi, scene, settings, loop); };
+            if (of.is_alone) {
+                note_peak();
+                grown = resident_growth(render_frames);
+            } else {
+                render_frames();
+            }
+            made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            auto const pictures = pipeline_.pictures(to_view(std::as_const(z)), loop);
+            auto const [frames, channels, height, width] = pictures.extents();
+            images = tensor<float, 4>::from_shape({frames, channels, height, width});
+            copy(to_view(images), pictures.view());
+        }
+        made.figures = measures_of(to_view(std::as_const(images)), scene, caption, embedder_, of.apart);
+        if (row.method != row_method::painted) {
+            made.figures["seconds_a_frame"] = made.seconds / static_cast<double>(of.frames);
+        }
+        if (grown) {
+            auto const pixels = scene.guidance.uv.grid().size() * of.frames;
+            made.figures["megabytes"] = static_cast<double>(*grown) / 1e6;
+            made.figures["map_megabytes"] = static_cast<double>(18 * pixels) / 1e6;
+        }
+        auto const key = key_of(of, planned, row);
+        if (planned.seed == 0) {
+            store_.keep_frames(key, to_view(std::as_const(images)));
+        }
+        store_.keep(key, made);
+    }
+
+    static latents<float> rendered(row_method method, network const& phi, evaluation_scene const& scene,
+                                   row_settings const& settings, any_loop const& loop) {
+        auto const with = [&](auto const& chosen) {
+            return render<std::remove_cvref_t<decltype(chosen)>>(phi, scene.uv(),
+                                                                 {.settings = settings, .method = chosen, .loop = loop})
+                .z;
         };
-        text << "| " << row.name << " | " << figure("consistency_1") << " | "
-             << examples::detail::decimal(row.consistency[0]) << " | " << figure("fidelity") << " | "
-             << examples::detail::decimal(row.fidelity) << " | " << figure("recognition") << " |\n";
+        return method == row_method::pix2video   ? with(pix2video{})
+               : method == row_method::tokenflow ? with(tokenflow{})
+                                                 : with(generative_rendering{});
     }
-    text << "\n| Frame consistency at interval |";
-    for (auto const interval : intervals) {
-        text << ' ' << interval << " | paper |";
-    }
-    text << "\n|---|" << std::string("---|---|---|---|---|---|---|---|---|---|") << '\n';
-    for (auto const& row : paper_rows) {
-        text << "| " << row.name << " |";
-        for (std::size_t k = 0; k < intervals.size(); ++k) {
-            auto const measure = "consistency_" + std::to_string(intervals[k]);
-            text << ' ' << figure_text(figure_of(runs, std::string(row.method), measure)) << " | "
-                 << examples::detail::decimal(row.consistency[k]) << " |";
-        }
-        text << '\n';
-    }
-    return text.str();
-}
 
-/// Frame consistency against the interval, for the plot: measured, its standard error and the paper's figure.
-std::string consistency_csv(std::vector<run_figures> const& runs) {
-    std::ostringstream text;
-    text << "method,interval,measured,standard_error,paper\n";
-    for (auto const& row : paper_rows) {
-        for (std::size_t k = 0; k < intervals.size(); ++k) {
-            auto const figure = figure_of(runs, std::string(row.method), "consistency_" + std::to_string(intervals[k]));
-            text << row.name << ',' << intervals[k] << ',' << (figure ? examples::detail::decimal(figure->mean, 6) : "")
-                 << ',' << (figure && figure->error ? examples::detail::decimal(*figure->error, 6) : "") << ','
-                 << examples::detail::decimal(row.consistency[k]) << '\n';
-        }
-    }
-    return text.str();
-}
-
-std::string all_tables(options const& told, std::vector<run_figures> const& runs) {
-    std::vector<table_column> const errors{{"error_1", "RMSE 1"},     {"error_5", "5"},   {"error_10", "10"},
-                                           {"error_15", "15"},        {"error_20", "20"}, {"contrast", "Contrast"},
-                                           {"sharpness", "Sharpness"}};
-    std::vector<table_column> const object_errors{{"object_error_1", "RMSE 1"},
-                                                  {"object_error_5", "5"},
-                                                  {"object_error_10", "10"},
-                                                  {"object_error_15", "15"},
-                                                  {"object_error_20", "20"},
-                                                  {"relative_object_error_1", "RMSE 1 / contrast"},
-                                                  {"relative_object_error_10", "RMSE 10 / contrast"}};
-    std::vector<table_column> const pairs{{"object_pairs_1", "Pairs 1"},
-                                          {"object_pairs_5", "5"},
-                                          {"object_pairs_10", "10"},
-                                          {"object_pairs_15", "15"},
-                                          {"object_pairs_20", "20"}};
-    std::vector<table_column> const embedded{{"consistency_1", "Consistency 1"}, {"consistency_5", "5"},
-                                             {"consistency_10", "10"},           {"consistency_20", "20"},
-                                             {"fidelity", "Fidelity"},           {"recognition", "Recognised"}};
-    std::vector<table_column> const flickers{{"background_flicker", "Background"},
-                                             {"colour_flicker", "Mean colour"},
-                                             {"deviation_flicker", "Colour deviation"}};
-    std::vector<table_column> const differences{{"object_error_1", "RMSE 1, objects"},
-                                                {"object_error_10", "RMSE 10, objects"},
-                                                {"object_error_20", "RMSE 20, objects"},
-                                                {"relative_object_error_10", "RMSE 10 / contrast"},
-                                                {"consistency_1", "Consistency 1"},
-                                                {"consistency_10", "Consistency 10"},
-                                                {"fidelity", "Fidelity"},
-                                                {"sharpness", "Sharpness"},
-                                                {"colour_flicker", "Mean colour"}};
-    auto all = told.groups;
-    all.insert(all.begin(), "render");
-    std::ostringstream text;
-    text
-        << "# Tables 1 and 2 of the paper\n\n"
-        << told.scenes.size() << " scenes, " << told.prompts.size() << " prompts, " << told.seeds << " seeds, "
-        << told.frames << " frames, " << told.steps
-        << " steps; mean ± standard error over runs. The paper's figures are CLIP's, those measured here the reference "
-           "embedder's.\n\n"
-        << paper_tables(runs) << "\n# Correspondence error, all surfaces\n\n"
-        << markdown_table(runs, all, errors) << "\n# Correspondence error, objects without the ground\n\n"
-        << markdown_table(runs, all, object_errors) << "\nPairs of pixels behind each error of a run:\n\n"
-        << scene_table(runs, pairs) << "\n# Frame consistency and prompt fidelity\n\n"
-        << markdown_table(runs, all, embedded) << "\n# Flicker\n\n"
-        << markdown_table(runs, all, flickers) << "\n# Ours against the others, paired runs\n\n"
-        << difference_table(runs, "Ours, UV noise", told.groups, differences);
-    return text.str();
-}
+    options told_;
+    threaded_loop loop_;
+    stable_diffusion<float> pipeline_;
+    reference_clip<float> embedder_;
+    run_store store_;
+    std::vector<attention_site> sites_;
+    std::uint32_t branches_ = 1;
+    std::string networks_key_;
+    std::mutex peak_mutex_;
+    std::int64_t peak_ = 0;
+};
 
 void evaluate(options const& told) {
-    threaded_loop const loop(told.threads);
-    auto const embedder = reference_embedder<float>::from_folder(told.embedder);
-    auto const methods = chosen_methods(told);
-    std::vector<job> jobs;
-    for (std::size_t prompt = 0; prompt < told.prompts.size(); ++prompt) {
-        style_number(told.prompts[prompt]);
-        for (std::uint64_t seed = 0; seed < told.seeds; ++seed) {
-            jobs.push_back({prompt, seed, methods.size()});
-            for (std::size_t method = 0; method < methods.size(); ++method) {
-                jobs.push_back({prompt, seed, method});
-            }
-        }
-    }
+    auto const studies = chosen_studies(told);
     make_folder(told.out);
-    std::vector<run_figures> runs;
-    for (auto const& scene_name : told.scenes) {
-        auto const scene = make_evaluation_scene(scene_name, told.frames, {told.size, told.size}, loop);
-        auto const outcomes = run_scene(told, scene, jobs, methods, embedder, loop);
-        std::vector<std::string> labels;
-        std::vector<tensor<float, 4> const*> shown;
-        for (std::size_t j = 0; j < jobs.size(); ++j) {
-            auto const is_render = jobs[j].method == methods.size();
-            auto const label = is_render ? "Painted render" : label_of(methods[jobs[j].method]);
-            runs.push_back({label, is_render ? "render" : methods[jobs[j].method].group, scene.name,
-                            told.prompts[jobs[j].prompt], jobs[j].seed, outcomes[j].figures});
-            if (is_shown(jobs[j])) {
-                labels.push_back(label);
-                shown.push_back(&outcomes[j].images);
-            }
-        }
-        write_contact_sheet(told.out / (scene.name + ".png"), labels, shown);
-        write_time_slices(told.out / (scene.name + "_over_time.png"), labels, shown, told.size * 5 / 8);
-        // After every scene, so that a run that is stopped leaves what it has measured.
-        write_text(told.out / "runs.csv", runs_csv(runs));
+    comparison compared(told);
+    for (auto const& each : studies) {
+        told.only_lists ? compared.list(each) : compared.run(each);
     }
-    write_text(told.out / "tables.csv", means_csv(runs));
-    write_text(told.out / "consistency.csv", consistency_csv(runs));
-    auto const tables = all_tables(told, runs);
-    write_text(told.out / "tables.md", tables);
-    std::printf("\n%s", tables.c_str());
+    if (auto const peak = compared.peak(); peak > 0) {
+        std::printf("\nPeak memory: %.0f MB\n", static_cast<double>(peak) / 1e6);
+    }
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
     options told;
-    CLI::App app("Renders three scenes with every method, baseline and ablation of the paper, and measures them.");
-    app.add_option("--out", told.out, "Folder of tables and pictures")->required();
-    app.add_option("--weights", told.weights, "The denoiser, a folder in diffusers' layout");
-    app.add_option("--embedder", told.embedder, "The image_text_embedder of train_embedder.py");
-    app.add_option("--scenes", told.scenes, "Built-in scenes")->capture_default_str();
-    auto const* const prompts = app.add_option("--prompts", told.prompts, "Styles")->capture_default_str();
-    auto const* const seeds =
-        app.add_option("--seeds", told.seeds, "Runs of each scene and prompt")->capture_default_str();
-    app.add_option("--frames", told.frames, "Frames of an animation")->capture_default_str();
-    auto const* const steps = app.add_option("--steps", told.steps, "Denoising steps")->capture_default_str();
-    app.add_option("--keyframes", told.keyframes, "Keyframes of a step")->capture_default_str();
-    app.add_option("--alpha", told.alpha, "Weight of the blended features (eq. 6)")->capture_default_str();
-    app.add_option("--groups", told.groups, "Of method, noise, ablation and correspondence (texels of any resolution)")
-        ->capture_default_str();
-    app.add_option("--methods", told.methods, "Names as in the tables; all of the groups unless told");
-    app.add_option("--size", told.size, "Height and width of the images")->capture_default_str();
+    CLI::App app(
+        "Renders scenes with every method, baseline and ablation, and measures them. What was made is kept in\n"
+        "OUT/runs and not made again as long as all that it depends on stays the same.");
+    app.add_option("--out", told.out, "Folder of tables, pictures and kept runs")->required();
+    auto* const what = app.add_option_group("What", "methods and ablations unless told");
+    what->add_flag("--quick", told.is_quick, "A look in minutes: fewer runs, frames and steps; no evidence");
+    what->add_flag("--full", told.is_full, "Three seeds, all noises and texels, 48 frames and 50 steps once; hours");
+    what->add_flag("--development", told.is_development,
+                   "Variants of vivid on scenes, captions and seeds that settings may be chosen by");
+    what->add_flag("--long", told.is_long, "240 frames of one scene, and what memory they take");
+    what->require_option(0, 1);
+    app.add_flag("--list", told.only_lists, "Say what would be made and how much of it is kept, and make nothing");
+    app.add_option("--studies", told.studies, "Only these, by the names that --list tells");
+    app.add_option("--rows", told.rows, "Only these, by the names that --list tells");
+    app.add_option("--scenes", told.scenes, "Only these, by the names that --list tells");
+    app.add_option("--captions", told.captions, "The first so many");
+    app.add_option("--seeds", told.seeds, "Runs of each scene and caption")->check(CLI::PositiveNumber);
+    app.add_option("--frames", told.frames, "Frames of an animation")->check(CLI::PositiveNumber);
+    app.add_option("--steps", told.steps, "Denoising steps")->check(CLI::PositiveNumber);
+    app.add_option("--pipeline", told.pipeline, "The denoiser, a folder in diffusers' layout")->capture_default_str();
+    app.add_option("--embedder", told.embedder, "The embedder, a folder of train_embedder.py")->capture_default_str();
+    app.add_option("--guidance", told.guidance, "Scale of classifier-free guidance")->capture_default_str();
     app.add_option("--threads", told.threads, "Threads; 0 = all of the machine")->capture_default_str();
-    bool is_quick = false;
-    app.add_flag("--quick", is_quick, "One prompt, one seed and fewer steps where not told: a look, no evidence");
     CLI11_PARSE(app, argc, argv);
-    if (is_quick) {
-        told.prompts.resize(prompts->count() > 0 ? told.prompts.size() : 1);
-        told.seeds = seeds->count() > 0 ? told.seeds : 1;
-        told.steps = steps->count() > 0 ? told.steps : 8;
-    }
     try {
         evaluate(told);
     } catch (std::exception const& failure) {
-        std::fprintf(stderr, "evaluate: %s\n", failure.what());
+        std::fprintf(stderr, "%s\n", failure.what());
         return 1;
     }
     return 0;

@@ -2,11 +2,15 @@
 // A scene to compare methods on: its guidance, its true correspondences, and what it looks like when it is painted.
 #pragma once
 
-#include <examples/reference_denoiser/lit_render.hpp>
-#include <examples/reference_denoiser/palette.hpp>
-#include <examples/reference_denoiser/random_draw.hpp>
-#include <examples/reference_denoiser/surface_style.hpp>
+#include "caption.hpp"
+#include "development_world.hpp"
+
+#include <examples/miniature/lit_picture.hpp>
+#include <examples/miniature/surface_paint.hpp>
+#include <examples/miniature/world_colours.hpp>
+#include <examples/miniature/world_scene.hpp>
 #include <examples/scenes/scenes.hpp>
+#include <examples/support/guidance_source.hpp>
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/index.hpp>
@@ -54,40 +58,93 @@ private:
     float share_;
 };
 
+/// The first frames of a longer animation. A model of animation.
+class first_frames {
+public:
+    first_frames(scenes::any_animation scene, std::size_t frames) : scene_(std::move(scene)), frames_(frames) {}
+
+    std::size_t frame_count() const { return frames_; }
+    posed_scene frame(frame_index i) const { return scene_.frame(i); }
+
+private:
+    scenes::any_animation scene_;
+    std::size_t frames_;
+};
+
 /// A built-in scene as it is compared: so close that patterns as coarse as a small image needs still repeat on its
-/// objects, and with a camera that goes around no faster than 5 degrees a frame at 24 frames, so that frames 20 apart
-/// still show some of the same surfaces. Throws as make_scene does.
+/// objects, and as fast for any number of frames: 24 a second, the camera goes around by 5 degrees a frame. Throws as
+/// make_scene does.
 inline scenes::any_animation compared_animation(std::string const& name, std::size_t frames) {
-    if (name == "camera_rotation") {
-        return scenes::any_animation(
-            close_up(scenes::any_animation(scenes::camera_rotation(frames, glm::radians(120.0f))), 0.6f));
-    }
-    return scenes::any_animation(close_up(scenes::make_scene(name, frames), name == "bouncing_balls" ? 0.5f : 0.8f));
+    auto const is_rotation = name == "camera_rotation";
+    auto const whole = std::max<std::size_t>(frames, 48); // two seconds, the shortest that the balls take
+    auto scene =
+        is_rotation
+            ? scenes::any_animation(scenes::camera_rotation(whole, glm::radians(5.0f) * static_cast<float>(whole)))
+            : scenes::make_scene(name, whole);
+    auto const share = is_rotation ? 0.6f : name == "bouncing_balls" ? 0.5f : 0.8f;
+    return scenes::any_animation(first_frames(scenes::any_animation(close_up(std::move(scene), share)), frames));
 }
 
-/// One of the built-in scenes, rasterised at four times the size of its images. None of them can be drawn as a scene of
-/// the training data: spheres, cylinders and capsules do not occur there, nor does the mannequin, nor any motion.
+/// A scene, rasterised at a multiple of the size of its images. None of them can be drawn as a scene of the training data:
+/// those of the held-out set have shapes, motions and numbers of things that do not occur there, those of the development
+/// set another seed, and motion.
 struct evaluation_scene {
     std::string name;
+    scene_set set;
+    subject_words subject;
+    std::vector<miniature::pattern_layout> layouts; ///< by an object's number; further ones are solid
     scenes::any_animation animation;
     grid_extents image;
     rendered_guidance guidance;
     tensor<float, 3> inverse_depth; ///< [frames, height, width] of the images, in [0, 1]
     pixel_correspondence pixels;    ///< what errors are measured at
+    environment_rays rays;          ///< what background_noise::environment needs
 
     std::size_t frame_count() const { return animation.frame_count(); }
     uv_maps_view uv() const { return to_uv_view(guidance.uv); }
 };
 
-/// The built-in scene `name` in `frames` frames of `image` pixels. Throws as make_scene and rasterize do.
-inline evaluation_scene make_evaluation_scene(std::string const& name, std::size_t frames, grid_extents image,
-                                              any_loop const& loop) {
-    auto animation = compared_animation(name, frames);
-    grid_extents const fine{4 * image.height, 4 * image.width};
+/// The names of the scenes of a set.
+inline std::vector<std::string> scene_names(scene_set set) {
+    return set == scene_set::development ? std::vector<std::string>(development_names.begin(), development_names.end())
+                                         : std::vector<std::string>(scenes::names.begin(), scenes::names.end());
+}
+
+/// What captions call the things of a scene. Throws as development_world does.
+inline subject_words subject_of(std::string const& name, scene_set set) {
+    return set == scene_set::development ? development_world(name, 1).subject()
+           : name == "walking_figure"    ? subject_words{"a", "figure"}
+                                         : subject_words{"some", "toys"};
+}
+
+/// The scene `name` in `frames` frames of `image` pixels, its maps `map_pixels` times as fine. Throws as make_scene,
+/// development_world and rasterize do.
+inline evaluation_scene make_evaluation_scene(std::string const& name, scene_set set, std::size_t frames,
+                                              grid_extents image, any_loop const& loop, std::size_t map_pixels = 4) {
+    std::vector<miniature::pattern_layout> layouts{miniature::pattern_layout::flat};
+    auto animation = [&] {
+        if (set == scene_set::held_out) {
+            return compared_animation(name, frames);
+        }
+        development_world world(name, frames);
+        layouts = world.layouts();
+        return scenes::any_animation(std::move(world));
+    }();
+    grid_extents const fine{map_pixels * image.height, map_pixels * image.width};
     auto guidance = rasterize(animation, fine, loop);
     auto inverse_depth = cell_means(sequence_inverse_depth(guidance.depth), image);
     pixel_correspondence pixels(to_uv_view(guidance.uv), image, 0.25, loop);
-    return {name, std::move(animation), image, std::move(guidance), std::move(inverse_depth), std::move(pixels)};
+    auto rays = detail::rays_of(animation, fine);
+    return {name,
+            set,
+            subject_of(name, set),
+            std::move(layouts),
+            std::move(animation),
+            image,
+            std::move(guidance),
+            std::move(inverse_depth),
+            std::move(pixels),
+            std::move(rays)};
 }
 
 /// The middle of the box around all that stands out, and half its diagonal.
@@ -122,29 +179,43 @@ inline float middle_depth(evaluation_scene const& scene) {
     return *middle;
 }
 
-/// A style on all objects of a scene, in a palette that training never showed: images [frames, 3, height, width]. The
-/// same seed paints the same surfaces in the same way, so that only light and view change from frame to frame.
-inline tensor<float, 4> painted_frames(evaluation_scene const& scene, surface_style style, std::uint64_t seed,
-                                       any_loop const& loop) {
+/// What a caption says on all objects of a scene: images [frames, 3, height, width]. The same seed paints the same surfaces
+/// in the same way, so that only light and view change from frame to frame.
+inline tensor<float, 4> painted_frames(evaluation_scene const& scene, compared_caption const& caption,
+                                       std::uint64_t seed, any_loop const& loop) {
     auto const first = scene.animation.frame({0});
     random_draw draw(seed, 0);
-    scene_paint paint;
-    // Features as large as in the training data: 7 to 10 pixels of 64, where half of what stands out is nearer.
-    auto const pixel_size = 2 * std::tan(first.camera.vertical_fov / 2) * middle_depth(scene) / 64;
-    auto const feature = pixel_size * draw.uniform(7, 10);
-    auto const colours = draw_palette(draw, {}, palette_set::held_out);
+    miniature::picture_paint paint;
+    // Features as large as in the training data: 9 to 15 pixels of 128, where half of what stands out is nearer.
+    auto const pixel_size = 2 * std::tan(first.camera.vertical_fov / 2) * middle_depth(scene) / 128;
+    auto const feature =
+        pixel_size * draw.uniform(9, 15) * (caption.pattern == miniature::surface_pattern::bricks ? 1.25f : 1.0f);
+    auto const first_shade = miniature::draw_shade(draw, caption.first);
+    auto const second_shade = miniature::draw_shade(draw, caption.second);
     for (auto const& posed : first.objects) {
-        auto const is_ground = !stands_out(posed.object);
-        paint.surfaces.emplace_back(draw, is_ground ? surface_style::plain : style,
-                                    is_ground ? draw_ground(draw) : colours, *posed.surface, feature);
-        paint.is_patterned.push_back(is_ground ? 0 : 1);
+        miniature::paint_recipe recipe{caption.pattern,
+                                       miniature::surface_material::smooth,
+                                       miniature::pattern_layout::solid,
+                                       first_shade,
+                                       second_shade,
+                                       feature};
+        if (posed.object.value < scene.layouts.size()) {
+            recipe.layout = scene.layouts[posed.object.value];
+        }
+        auto const is_subject = stands_out(posed.object);
+        if (!is_subject) {
+            recipe.pattern = miniature::surface_pattern::plain;
+            recipe.first = miniature::draw_quiet_shade(draw, caption.ground);
+        }
+        paint.surfaces.emplace_back(draw, recipe, *posed.surface);
+        paint.is_subject.push_back(is_subject ? 1 : 0);
     }
-    draw_sky(draw, paint);
+    miniature::detail::draw_light(draw, caption.light, paint);
     auto images = tensor<float, 4>::from_shape({scene.frame_count(), 3, scene.image.height, scene.image.width});
     loop(scene.frame_count(), [&](std::size_t i) {
         auto const posed = scene.animation.frame({static_cast<std::uint32_t>(i)});
         auto const [target, reach] = middle_and_radius(posed);
-        auto const picture = render_lit(posed, paint, scene.image, 3, target, 1.6f * reach);
+        auto const picture = miniature::draw_lit(posed, paint, scene.image, 3, target, 1.6f * reach);
         copy(to_view(images)[i], to_view(picture.image));
     });
     return images;

@@ -1,130 +1,205 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 4, tables 1 and 2, fig. 6] Every method, baseline and ablation that is compared, as one list.
+// [GR sec. 4, tables 1 and 2, fig. 6] Every method, baseline, ablation and variant that is compared: one line each.
 #pragma once
 
+#include <genrender/attention/attention_site.hpp>
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
 #include <genrender/baselines/pix2video.hpp>
 #include <genrender/baselines/tokenflow.hpp>
-#include <genrender/core/tensor.hpp>
-#include <genrender/maps/uv_maps_view.hpp>
 #include <genrender/pipeline/render.hpp>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace genrender::examples {
 
-/// One row of the tables.
-template <class Network>
-struct compared_method {
-    std::string name;  ///< as the paper writes it
-    std::string noise; ///< UV, fixed or independent
-    std::string group; ///< method, noise, ablation or correspondence
-    /// The clean latents of all frames for the settings that all methods share.
-    std::function<latents<float>(Network const&, uv_maps_view const&, render_settings<float>)> run;
+/// Settings of all rows.
+using row_settings = render_settings<float>;
+
+/// What denoises a row's frames.
+enum class row_method { painted, generative_rendering, pix2video, tokenflow };
+
+/// One row of the tables: a preset and what is changed of it.
+struct compared_row {
+    std::string name;                        ///< as the tables have it
+    std::string group;                       ///< render, method, noise, ablation, texels or development
+    row_method method;                       ///< what denoises its frames
+    row_settings (*preset)() = nullptr;      ///< the settings that it begins with
+    void (*change)(row_settings&) = nullptr; ///< what is different; none: nothing
 };
 
-/// The name of a kind of noise in the tables.
-inline std::string noise_name(noise_kind kind) {
-    return kind == noise_kind::uv ? "UV" : kind == noise_kind::fixed ? "fixed" : "independent";
+/// What all rows of a run share, whatever their settings.
+struct shared_settings {
+    std::size_t steps = 20;
+    std::size_t keyframes = 4;
+    float sigma_min = 0.0292F;
+    float sigma_max = 14.6146F;
+    std::uint64_t seed = 0; ///< of noise and of keyframes
+};
+
+/// The settings of a row's run.
+inline row_settings settings_of(compared_row const& row, shared_settings const& shared) {
+    auto settings = row.preset();
+    settings.steps = shared.steps;
+    settings.sigma_min = shared.sigma_min;
+    settings.sigma_max = shared.sigma_max;
+    settings.noise.seed = shared.seed;
+    settings.keyframes.seed = shared.seed;
+    settings.keyframes.count = shared.keyframes;
+    if (row.change != nullptr) {
+        row.change(settings);
+    }
+    return settings;
 }
 
-/// The groups of compared_methods that the paper's comparison holds.
-inline std::vector<std::string> paper_groups() { return {"method", "noise", "ablation"}; }
+// Presets.
 
-/// The paper's methods as it runs them, then every baseline with our method's noise, then the ablations, then the
-/// literal texels of features and of noise that the library's own correspondence and noise replace. What they share, a
-/// caller sets: seeds, steps, sampler, keyframes and layers.
-template <class Network>
-std::vector<compared_method<Network>> compared_methods() {
-    using settings_type = render_settings<float>;
-    std::vector<compared_method<Network>> methods;
-    auto const run = [](auto const& method, Network const& phi, uv_maps_view const& UV, settings_type const& settings) {
-        return render<std::remove_cvref_t<decltype(method)>>(phi, UV, {.settings = settings, .method = method}).z;
-    };
-    auto const add_frame_by_frame = [&](std::string group, noise_kind noise) {
-        methods.push_back({"Per-Frame", noise_name(noise), std::move(group),
-                           [run, noise](Network const& phi, uv_maps_view const& UV, settings_type settings) {
-                               settings = per_frame(settings);
-                               settings.noise.kind = noise;
-                               return run(generative_rendering{}, phi, UV, settings);
-                           }});
-    };
-    auto const add_baseline = [&](std::string name, std::string group, noise_kind noise, auto method) {
-        methods.push_back(
-            {std::move(name), noise_name(noise), std::move(group),
-             [run, noise, method](Network const& phi, uv_maps_view const& UV, settings_type const& settings) {
-                 return run(method, phi, UV, baseline_settings(settings, noise));
-             }});
-    };
-    auto const add_ours = [&](std::string name, std::string group, noise_kind noise, auto change) {
-        methods.push_back({std::move(name), noise_name(noise), std::move(group),
-                           [run, noise, change](Network const& phi, uv_maps_view const& UV, settings_type settings) {
-                               settings.noise.kind = noise;
-                               // The paper's, which is not the default.
-                               settings.normalization.statistics = adain_statistics::mean_and_deviation;
-                               change(settings);
-                               return run(generative_rendering{}, phi, UV, settings);
-                           }});
-    };
-    auto const as_it_is = [](settings_type&) {};
+namespace detail {
 
-    add_frame_by_frame("method", noise_kind::independent);
-    add_baseline("Pix2Video*", "method", noise_kind::fixed, pix2video{});
-    add_baseline("TokenFlow*", "method", noise_kind::fixed, tokenflow{});
-    add_ours("Ours", "method", noise_kind::uv, as_it_is);
-
-    add_frame_by_frame("noise", noise_kind::fixed);
-    add_frame_by_frame("noise", noise_kind::uv);
-    add_baseline("Pix2Video*", "noise", noise_kind::uv, pix2video{});
-    add_baseline("TokenFlow*", "noise", noise_kind::uv, tokenflow{});
-
-    add_ours("No pre-attention", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.injection.pre_attention = false; });
-    add_ours("No post-attention", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.injection.post_attention = false; });
-    add_ours("Ours", "ablation", noise_kind::fixed, as_it_is);
-    add_ours("Ours", "ablation", noise_kind::independent, as_it_is);
-    add_ours("No AdaIN", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.normalization.enabled = false; });
-    add_ours("AdaIN of means alone", "ablation", noise_kind::uv,
-             [](settings_type& settings) { settings.normalization.statistics = adain_statistics::mean; });
-
-    auto const add_variant = [&](std::string name, std::string noise, auto change) {
-        add_ours(std::move(name), "correspondence", noise_kind::uv, change);
-        methods.back().noise = std::move(noise);
-    };
-    auto const by_texels = [](settings_type& settings, std::size_t T) {
+/// The paper's settings to the letter: texels of features and of noise, T matched to the maps, mean and deviation.
+template <class Settings>
+Settings paper_of() {
+    if constexpr (requires { Settings::paper(); }) {
+        return Settings::paper();
+    } else {
+        Settings settings;
         settings.correspondence.kind = correspondence_kind::texel_grid;
-        settings.correspondence.texels.T = T > 0 ? std::optional(T) : std::nullopt;
-    };
-    auto const read_noise = [](settings_type& settings, noise_reading reading, std::size_t T) {
-        settings.noise.reading = reading;
-        settings.noise.T = T > 0 ? std::optional(T) : std::nullopt;
-    };
-    for (std::size_t const T : {64U, 256U, 1024U, 4096U}) {
-        add_variant("Texels " + std::to_string(T), "UV",
-                    [by_texels, T](settings_type& settings) { by_texels(settings, T); });
+        settings.noise.reading = noise_reading::nearest_texel;
+        settings.average = texel_average::plain;
+        settings.normalization.statistics = adain_statistics::mean_and_deviation;
+        return settings;
     }
-    for (std::size_t const T : {64U, 256U, 1024U, 4096U}) {
-        add_variant("Ours", "nearest " + std::to_string(T), [read_noise, T](settings_type& settings) {
-            read_noise(settings, noise_reading::nearest_texel, T);
-        });
+}
+
+/// What measured best; the default.
+template <class Settings>
+Settings vivid_of() {
+    if constexpr (requires { Settings::vivid(); }) {
+        return Settings::vivid();
+    } else {
+        return {};
     }
-    add_variant("Ours", "bilinear matched",
-                [read_noise](settings_type& settings) { read_noise(settings, noise_reading::bilinear_texel, 0); });
-    add_variant("Texels matched", "nearest matched", [by_texels, read_noise](settings_type& settings) {
-        by_texels(settings, 0);
-        read_noise(settings, noise_reading::nearest_texel, 0);
-    });
-    add_variant("Plain average", "UV", [](settings_type& settings) { settings.average = texel_average::plain; });
-    return methods;
+}
+
+} // namespace detail
+
+/// The paper to the letter.
+inline row_settings paper() { return detail::paper_of<row_settings>(); }
+/// Consistent and vivid.
+inline row_settings vivid() { return detail::vivid_of<row_settings>(); }
+/// Per-Frame with independent noise, as the paper has it.
+inline row_settings alone() { return per_frame(paper()); }
+/// Per-Frame with one noise for all frames.
+inline row_settings alone_fixed() { return per_frame(paper(), noise_kind::fixed); }
+/// Per-Frame with noise that goes along with surfaces.
+inline row_settings alone_uv() { return per_frame(vivid(), noise_kind::uv); }
+/// A baseline with one noise for all frames, as the paper has it.
+inline row_settings baseline_fixed() { return baseline_settings(paper()); }
+/// A baseline with noise that goes along with surfaces: methods alone are compared.
+inline row_settings baseline_uv() {
+    auto settings = baseline_settings(paper(), noise_kind::uv);
+    settings.noise.reading = vivid().noise.reading;
+    return settings;
+}
+
+// Changes.
+
+/// The same alpha at every step and site.
+template <int Hundredths>
+void alpha_of(row_settings& settings) {
+    settings.alpha = [](std::size_t, attention_site const&) { return static_cast<float>(Hundredths) / 100; };
+}
+
+/// Features by texels of a resolution; 0: matched to the maps.
+template <std::size_t T>
+void texels_of(row_settings& settings) {
+    settings.correspondence.kind = correspondence_kind::texel_grid;
+    settings.correspondence.texels.T = T > 0 ? std::optional(T) : std::nullopt;
+}
+
+/// Noise by texels of a resolution; 0: matched to the maps.
+template <noise_reading Reading, std::size_t T>
+void noise_texels_of(row_settings& settings) {
+    settings.noise.reading = Reading;
+    settings.noise.T = T > 0 ? std::optional(T) : std::nullopt;
+}
+
+/// The textured and lit surfaces themselves, which no method beats by right.
+inline compared_row painted_row() { return {"Painted render", "render", row_method::painted}; }
+
+/// All rows. A further one is a further line.
+inline std::vector<compared_row> compared_rows() {
+    using enum row_method;
+    using s = row_settings;
+    // clang-format off
+    return {
+        {"Per-Frame, independent noise", "method", generative_rendering, alone},
+        {"Per-Frame, UV noise", "method", generative_rendering, alone_uv},
+        {"Pix2Video*, fixed noise", "method", pix2video, baseline_fixed},
+        {"Pix2Video*, UV noise", "method", pix2video, baseline_uv},
+        {"TokenFlow*, fixed noise", "method", tokenflow, baseline_fixed},
+        {"TokenFlow*, UV noise", "method", tokenflow, baseline_uv},
+        {"paper", "method", generative_rendering, paper},
+        {"vivid", "method", generative_rendering, vivid},
+
+        {"paper, no pre-attention", "ablation", generative_rendering, paper, [](s& x) { x.injection.pre_attention = false; }},
+        {"paper, no post-attention", "ablation", generative_rendering, paper, [](s& x) { x.injection.post_attention = false; }},
+        {"paper, no AdaIN", "ablation", generative_rendering, paper, [](s& x) { x.normalization.enabled = false; }},
+        {"paper, fixed noise", "ablation", generative_rendering, paper, [](s& x) { x.noise.kind = noise_kind::fixed; }},
+        {"paper, independent noise", "ablation", generative_rendering, paper, [](s& x) { x.noise.kind = noise_kind::independent; }},
+        {"vivid, no pre-attention", "ablation", generative_rendering, vivid, [](s& x) { x.injection.pre_attention = false; }},
+        {"vivid, no post-attention", "ablation", generative_rendering, vivid, [](s& x) { x.injection.post_attention = false; }},
+        {"vivid, no normalisation", "ablation", generative_rendering, vivid, [](s& x) { x.normalization.enabled = false; }},
+        {"vivid, fixed noise", "ablation", generative_rendering, vivid, [](s& x) { x.noise.kind = noise_kind::fixed; }},
+        {"vivid, plain average", "ablation", generative_rendering, vivid, [](s& x) { x.average = texel_average::plain; }},
+
+        {"Per-Frame, fixed noise", "noise", generative_rendering, alone_fixed},
+        {"vivid, independent noise", "noise", generative_rendering, vivid, [](s& x) { x.noise.kind = noise_kind::independent; }},
+        {"vivid, independent background", "noise", generative_rendering, vivid, [](s& x) { x.noise.background = background_noise::independent; }},
+        {"vivid, environment background", "noise", generative_rendering, vivid, [](s& x) { x.noise.background = background_noise::environment; }},
+        {"vivid, nearest texel, T = 64", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 64>},
+        {"vivid, nearest texel, T = 256", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 256>},
+        {"vivid, nearest texel, T = 1024", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 1024>},
+        {"vivid, nearest texel, T = 4096", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 4096>},
+        {"vivid, nearest texel, T matched", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::nearest_texel, 0>},
+        {"vivid, bilinear texels, T matched", "noise", generative_rendering, vivid, noise_texels_of<noise_reading::bilinear_texel, 0>},
+
+        {"vivid, features by texels, T = 64", "texels", generative_rendering, vivid, texels_of<64>},
+        {"vivid, features by texels, T = 256", "texels", generative_rendering, vivid, texels_of<256>},
+        {"vivid, features by texels, T = 1024", "texels", generative_rendering, vivid, texels_of<1024>},
+        {"vivid, features by texels, T = 4096", "texels", generative_rendering, vivid, texels_of<4096>},
+        {"vivid, features by texels, T matched", "texels", generative_rendering, vivid, texels_of<0>},
+
+        {"no post-attention", "development", generative_rendering, vivid, [](s& x) { x.injection.post_attention = false; }},
+        {"no own copy", "development", generative_rendering, vivid, [](s& x) { x.injection.keeps_own_copy = false; }},
+        {"one keyframe", "development", generative_rendering, vivid, [](s& x) { x.keyframes.count = 1; }},
+        {"stratified keyframes", "development", generative_rendering, vivid, [](s& x) { x.keyframes.drawing = keyframe_drawing::stratified; }},
+        {"first fill 1", "development", generative_rendering, vivid, [](s& x) { x.first_fill_share = 1; }},
+        {"first fill 0", "development", generative_rendering, vivid, [](s& x) { x.first_fill_share = 0; }},
+        {"alpha .4", "development", generative_rendering, vivid, alpha_of<40>},
+        {"alpha .9", "development", generative_rendering, vivid, alpha_of<90>},
+        {"first 60 % of the steps", "development", generative_rendering, vivid, [](s& x) { x.window_end = 0.6F; }},
+        {"no normalisation", "development", generative_rendering, vivid, [](s& x) { x.normalization.enabled = false; }},
+        {"mean and deviation", "development", generative_rendering, vivid, [](s& x) { x.normalization.statistics = adain_statistics::mean_and_deviation; }},
+    };
+    // clang-format on
+}
+
+/// The rows of the groups, in their order.
+inline std::vector<compared_row> rows_of(std::vector<std::string> const& groups) {
+    std::vector<compared_row> rows;
+    for (auto const& row : compared_rows()) {
+        if (std::find(groups.begin(), groups.end(), row.group) != groups.end()) {
+            rows.push_back(row);
+        }
+    }
+    return rows;
 }
 
 } // namespace genrender::examples

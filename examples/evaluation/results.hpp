@@ -2,15 +2,13 @@
 // The figures of all runs, and the tables that are made of them: CSV for programs, Markdown for people.
 #pragma once
 
-#include "measures.hpp"
-
-#include <genrender/core/error.hpp>
 #include <genrender/evaluation/mean_and_error.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <span>
@@ -21,10 +19,13 @@
 
 namespace genrender::examples {
 
+/// Named figures of one run; a figure is left out where the scene gives none.
+using measures = std::map<std::string, double>;
+
 /// One run and what was measured of it.
 struct run_figures {
     std::string method; ///< name and noise
-    std::string group;  ///< render, method, noise or ablation
+    std::string group;  ///< render, method, noise, ablation, texels or development
     std::string scene;
     std::string prompt;
     std::uint64_t seed;
@@ -45,14 +46,12 @@ inline std::string decimal(double value, int digits = 4) {
     return text.data();
 }
 
-/// The methods of the groups, in the order in which they first ran.
-inline std::vector<std::string> methods_of(std::span<run_figures const> runs, std::span<std::string const> groups) {
+/// The methods in the order in which they first ran.
+inline std::vector<std::string> methods_in_order(std::span<run_figures const> runs) {
     std::vector<std::string> methods;
-    for (auto const& group : groups) {
-        for (auto const& run : runs) {
-            if (run.group == group && std::find(methods.begin(), methods.end(), run.method) == methods.end()) {
-                methods.push_back(run.method);
-            }
+    for (auto const& run : runs) {
+        if (std::find(methods.begin(), methods.end(), run.method) == methods.end()) {
+            methods.push_back(run.method);
         }
     }
     return methods;
@@ -70,6 +69,19 @@ inline std::string markdown_head(std::string const& first, std::span<table_colum
 }
 
 } // namespace detail
+
+/// Whether any run has the measure.
+inline bool has_measure(std::span<run_figures const> runs, std::string const& measure) {
+    return std::any_of(runs.begin(), runs.end(), [&](auto const& run) { return run.figures.contains(measure); });
+}
+
+/// The columns that some run has a figure for.
+inline std::vector<table_column> measured(std::span<run_figures const> runs, std::span<table_column const> columns) {
+    std::vector<table_column> left;
+    std::copy_if(columns.begin(), columns.end(), std::back_inserter(left),
+                 [&](auto const& column) { return has_measure(runs, column.measure); });
+    return left;
+}
 
 /// Mean and standard error of a measure over all runs of a method; none if no run has it.
 inline std::optional<mean_and_error> figure_of(std::span<run_figures const> runs, std::string const& method,
@@ -107,12 +119,12 @@ inline std::string figure_text(std::optional<mean_and_error> const& figure) {
     return detail::decimal(figure->mean) + (figure->error ? " ± " + detail::decimal(*figure->error) : "");
 }
 
-/// A Markdown table: the methods of `groups` as rows, means and standard errors over their runs.
-inline std::string markdown_table(std::span<run_figures const> runs, std::span<std::string const> groups,
+/// A Markdown table: the methods as rows, means and standard errors over their runs.
+inline std::string markdown_table(std::span<run_figures const> runs, std::span<std::string const> methods,
                                   std::span<table_column const> columns) {
     std::ostringstream text;
     text << detail::markdown_head("Method", columns);
-    for (auto const& method : detail::methods_of(runs, groups)) {
+    for (auto const& method : methods) {
         text << "| " << method << " |";
         for (auto const& column : columns) {
             text << ' ' << figure_text(figure_of(runs, method, column.measure)) << " |";
@@ -122,19 +134,50 @@ inline std::string markdown_table(std::span<run_figures const> runs, std::span<s
     return text.str();
 }
 
-/// A Markdown table of `reference` against every other method of the groups: paired differences, reference minus
+/// A Markdown table of `reference` against every other of the methods: paired differences, reference minus
 /// method, so that their sign says which is greater.
 inline std::string difference_table(std::span<run_figures const> runs, std::string const& reference,
-                                    std::span<std::string const> groups, std::span<table_column const> columns) {
+                                    std::span<std::string const> methods, std::span<table_column const> columns) {
     std::ostringstream text;
     text << detail::markdown_head(reference + " minus", columns);
-    for (auto const& method : detail::methods_of(runs, groups)) {
+    for (auto const& method : methods) {
         if (method == reference) {
             continue;
         }
         text << "| " << method << " |";
         for (auto const& column : columns) {
             text << ' ' << figure_text(paired_difference(runs, reference, method, column.measure)) << " |";
+        }
+        text << '\n';
+    }
+    return text.str();
+}
+
+/// A Markdown table of variants of `base`: the base's own figures, and below them how much every other method has more
+/// than it in runs of the same scene, prompt and seed, both in thousandths with their standard errors.
+inline std::string variant_table(std::span<run_figures const> runs, std::string const& base,
+                                 std::span<table_column const> columns) {
+    auto const thousandths = [](std::optional<mean_and_error> const& figure, bool has_sign) {
+        if (!figure) {
+            return std::string("-");
+        }
+        auto text = detail::decimal(1000 * figure->mean, 1);
+        text = has_sign && figure->mean > 0 ? "+" + text : text;
+        return text + (figure->error ? " ± " + detail::decimal(1000 * *figure->error, 1) : "");
+    };
+    std::ostringstream text;
+    text << detail::markdown_head("Variant", columns) << "| " << base << " itself |";
+    for (auto const& column : columns) {
+        text << ' ' << thousandths(figure_of(runs, base, column.measure), false) << " |";
+    }
+    text << '\n';
+    for (auto const& method : detail::methods_in_order(runs)) {
+        if (method == base) {
+            continue;
+        }
+        text << "| " << method << " |";
+        for (auto const& column : columns) {
+            text << ' ' << thousandths(paired_difference(runs, method, base, column.measure), true) << " |";
         }
         text << '\n';
     }
@@ -176,7 +219,7 @@ inline std::string runs_csv(std::span<run_figures const> runs) {
     }
     text << '\n';
     for (auto const& run : runs) {
-        text << run.group << ",\"" << run.method << "\"," << run.scene << ',' << run.prompt << ',' << run.seed;
+        text << run.group << ",\"" << run.method << "\"," << run.scene << ",\"" << run.prompt << "\"," << run.seed;
         for (auto const& [name, present] : names) {
             text << ',' << (run.figures.contains(name) ? detail::decimal(run.figures.at(name), 6) : "");
         }

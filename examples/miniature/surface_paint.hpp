@@ -2,8 +2,8 @@
 // What surfaces are painted with: patterns of two colours in the rest pose's own space, on a material.
 #pragma once
 
-#include "../reference_denoiser/random_draw.hpp"
-#include "../reference_denoiser/surface_texture.hpp"
+#include "random_draw.hpp"
+#include "surface_texture.hpp"
 
 #include <genrender/scene/mesh.hpp>
 

@@ -2,7 +2,7 @@
 // Captions of the small world's pictures: the same thing said in several ways, and seldom all of it.
 #pragma once
 
-#include "../reference_denoiser/random_draw.hpp"
+#include "random_draw.hpp"
 #include "surface_paint.hpp"
 #include "world_colours.hpp"
 #include "world_scene.hpp"

@@ -2,7 +2,7 @@
 // The six colours of the small world, the shades that each of them has, and which pairs training never shows.
 #pragma once
 
-#include "../reference_denoiser/random_draw.hpp"
+#include "random_draw.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

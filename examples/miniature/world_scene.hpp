@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lit_picture.hpp"
-#include "../reference_denoiser/random_draw.hpp"
+#include "random_draw.hpp"
 #include "surface_paint.hpp"
 #include "world_colours.hpp"
 #include "world_shapes.hpp"

@@ -2,7 +2,7 @@
 // The shapes of the small world: balls, eggs, vases, boxes, pillars and figures of about unit size around the origin.
 #pragma once
 
-#include "../reference_denoiser/random_draw.hpp"
+#include "random_draw.hpp"
 #include "surface_paint.hpp"
 
 #include <genrender/scene/animation.hpp>

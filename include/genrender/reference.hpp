@@ -49,7 +49,6 @@
 #include <genrender/reference/pipeline_files.hpp>
 #include <genrender/reference/prompt_vocabulary.hpp>
 #include <genrender/reference/reference_clip.hpp>
-#include <genrender/reference/reference_embedder.hpp>
 #include <genrender/reference/reference_network.hpp>
 #include <genrender/reference/reference_weights.hpp>
 #include <genrender/reference/resampler.hpp>

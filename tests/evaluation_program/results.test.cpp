@@ -32,13 +32,25 @@ TEST_SUITE("evaluation_program/results") {
         CHECK_FALSE(paired_difference(three_runs(), "ours", "others", "error"));
     }
 
-    TEST_CASE("a table has a row for each method of its groups") {
-        CHECK(markdown_table(three_runs(), std::vector<std::string>{"method"},
-                             std::vector<table_column>{{"error", "RMSE"}}) ==
-              "| Method | RMSE |\n|---|---|\n| ours | 0.2000 ± 0.1000 |\n| theirs | 0.4000 |\n");
-        CHECK(difference_table(three_runs(), "ours", std::vector<std::string>{"method"},
-                               std::vector<table_column>{{"error", "RMSE"}}) ==
+    TEST_CASE("a table has a row for each of its methods, in their order") {
+        std::vector<std::string> const methods{"theirs", "ours"};
+        CHECK(markdown_table(three_runs(), methods, std::vector<table_column>{{"error", "RMSE"}}) ==
+              "| Method | RMSE |\n|---|---|\n| theirs | 0.4000 |\n| ours | 0.2000 ± 0.1000 |\n");
+        CHECK(difference_table(three_runs(), "ours", methods, std::vector<table_column>{{"error", "RMSE"}}) ==
               "| ours minus | RMSE |\n|---|---|\n| theirs | -0.3000 |\n");
+        CHECK(examples::detail::methods_in_order(three_runs()) == std::vector<std::string>{"ours", "theirs"});
+    }
+
+    TEST_CASE("a table of variants has the base in thousandths and what each variant has more than it") {
+        CHECK(variant_table(three_runs(), "ours", std::vector<table_column>{{"error", "RMSE"}, {"sharp", "Sharp"}}) ==
+              "| Variant | RMSE | Sharp |\n|---|---|---|\n| ours itself | 200.0 ± 100.0 | 1000.0 |\n"
+              "| theirs | +300.0 | - |\n");
+    }
+
+    TEST_CASE("columns without a figure in any run are left out") {
+        auto const left = measured(three_runs(), std::vector<table_column>{{"error", "RMSE"}, {"blur", "Blur"}});
+        REQUIRE(left.size() == 1);
+        CHECK(left.front().heading == "RMSE");
     }
 
     TEST_CASE("a table of scenes has a row for each and the figures of its first run") {
@@ -48,9 +60,9 @@ TEST_SUITE("evaluation_program/results") {
 
     TEST_CASE("every run is a line with empty fields where it has no figure") {
         CHECK(runs_csv(three_runs()) == "group,method,scene,prompt,seed,error,sharp\n"
-                                        "method,\"ours\",walk,dots,0,0.100000,1.000000\n"
-                                        "method,\"ours\",walk,dots,1,0.300000,\n"
-                                        "method,\"theirs\",walk,dots,0,0.400000,\n");
+                                        "method,\"ours\",walk,\"dots\",0,0.100000,1.000000\n"
+                                        "method,\"ours\",walk,\"dots\",1,0.300000,\n"
+                                        "method,\"theirs\",walk,\"dots\",0,0.400000,\n");
         CHECK(means_csv(three_runs()) == "group,method,measure,mean,standard_error,runs\n"
                                          "method,\"ours\",error,0.200000,0.100000,2\n"
                                          "method,\"ours\",sharp,1.000000,,1\n"

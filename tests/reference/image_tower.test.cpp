@@ -8,8 +8,11 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -34,6 +37,49 @@ TEST_SUITE("reference/image_tower") {
         image_tower<double> const tower({}, source);
         auto const image = golden_stack<double, 3>("image", {3, 40, 33});
         CHECK(tower(image.view(), threaded_loop(3)) == tower(image.view()));
+    }
+
+    TEST_CASE("the vector is made of the map of features, gate and matrices by hand") {
+        auto source = weights<double>::seeded(1, "tower");
+        image_tower<double> const tower({}, source);
+        auto const image = golden_stack<double, 3>("image", {3, 20, 33});
+        auto const map = tower.feature_map(image.view());
+        REQUIRE(map.extents() == std::array<std::size_t, 3>{96, 3, 5});
+        auto tensors = weights<double>::seeded(1, "tower");
+        auto const layer = [&](std::string const& name, std::vector<double> const& x, std::size_t outputs) {
+            auto const weight = tensors.take(name + ".weight", {outputs, x.size()});
+            auto y = tensors.take(name + ".bias", {outputs});
+            for (std::size_t o = 0; o < outputs; ++o) {
+                y[o] += std::inner_product(x.begin(), x.end(), weight.begin() + std::ptrdiff_t(o * x.size()), 0.0);
+            }
+            return y;
+        };
+        std::vector<double> means(2 * 96);
+        double shares = 0;
+        for (std::size_t place = 0; place < 15; ++place) {
+            std::vector<double> here(96);
+            for (std::size_t c = 0; c < 96; ++c) {
+                here[c] = map(c, place / 5, place % 5);
+                means[96 + c] += here[c] / 15;
+            }
+            auto const share = 1 / (1 + std::exp(-layer("image.gate", here, 1)[0]));
+            shares += share;
+            for (std::size_t c = 0; c < 96; ++c) {
+                means[c] += share * here[c];
+            }
+        }
+        for (std::size_t c = 0; c < 96; ++c) {
+            means[c] /= shares;
+        }
+        auto hidden = layer("image.hidden", means, 128);
+        for (auto& x : hidden) {
+            x /= 1 + std::exp(-x);
+        }
+        auto const expected = layer("image.projection", hidden, 64);
+        auto const vector = tower(image.view());
+        for (std::size_t d = 0; d < 64; ++d) {
+            CHECK(vector[d] == doctest::Approx(expected[d]).epsilon(1e-9));
+        }
     }
 
     TEST_CASE("images without three channels or without pixels are refused") {

@@ -170,6 +170,15 @@ TEST_SUITE("reference/reference_clip") {
         CHECK(clip.embed_text("striped<|endoftext|>ball") == clip.embed_text("striped"));
     }
 
+    TEST_CASE("features of an image are those of the tower for each place") {
+        clip_folder const folder;
+        auto const clip = reference_clip<float>::from_folder(folder.path());
+        // Strides 2, 2, 1, 1.
+        auto const features = clip.image_features(golden_image<float>("image", 19, 26).view());
+        CHECK(features.extents() == std::array<std::size_t, 3>{12, 5, 7});
+        CHECK_THROWS_AS(clip.image_features(stack<float, 3>({1, 8, 8}).view()), shape_error);
+    }
+
     TEST_CASE("images without three channels or without pixels are refused") {
         clip_folder const folder;
         auto const clip = reference_clip<float>::from_folder(folder.path());

@@ -50,6 +50,24 @@ bool point_counts(Point const& point, Counts const& counts) {
     }
 }
 
+/// Calls `visit(i, q, j, p)` for every pair of pixels q of frame i and p of frame j = i + interval that show the same
+/// surface point of an object that counts.
+template <correspondence_map Map, object_predicate Counts, class Visit>
+void visit_pairs(Map const& map, std::size_t interval, Counts const& counts, Visit const& visit) {
+    auto const tokens = grid_extents(map.grid()).size();
+    for (std::size_t later = interval; later < map.frame_count(); ++later) {
+        frame_index const i{static_cast<std::uint32_t>(later - interval)};
+        frame_index const j{static_cast<std::uint32_t>(later)};
+        for (std::uint32_t p = 0; p < tokens; ++p) {
+            auto const point = map.point_at(j, {p});
+            auto const is_chosen = point && point_counts(*point, counts);
+            if (auto const q = is_chosen ? map.token_at(i, *point) : std::nullopt) {
+                visit(i, *q, j, token_index{p});
+            }
+        }
+    }
+}
+
 } // namespace detail
 
 /// Root of the mean squared difference, over all channels, between pixels of frames i and i + interval that show the
@@ -70,25 +88,15 @@ template <class Real, correspondence_map Map, object_predicate Counts = every_ob
             require_value(interval > 0, "correspondence_error", "interval", interval, "at least 1");
             double squares = 0;
             std::size_t pairs = 0;
-            for (std::size_t later = interval; later < images.extent(0); ++later) {
-                frame_index const i{static_cast<std::uint32_t>(later - interval)};
-                frame_index const j{static_cast<std::uint32_t>(later)};
-                for (std::uint32_t p = 0; p < grid.size(); ++p) {
-                    auto const point = map.point_at(j, {p});
-                    auto const is_chosen = point && detail::point_counts(*point, counts);
-                    auto const q = is_chosen ? map.token_at(i, *point) : std::nullopt;
-                    if (!q) {
-                        continue;
-                    }
-                    ++pairs;
-                    for (std::size_t c = 0; c < images.extent(1); ++c) {
-                        auto const difference =
-                            static_cast<double>(images(j.value, c, p / grid.width, p % grid.width)) -
-                            static_cast<double>(images(i.value, c, q->value / grid.width, q->value % grid.width));
-                        squares += difference * difference;
-                    }
+            detail::visit_pairs(map, interval, counts, [&](auto i, auto q, auto j, auto p) {
+                ++pairs;
+                for (std::size_t c = 0; c < images.extent(1); ++c) {
+                    auto const difference =
+                        static_cast<double>(images(j.value, c, p.value / grid.width, p.value % grid.width)) -
+                        static_cast<double>(images(i.value, c, q.value / grid.width, q.value % grid.width));
+                    squares += difference * difference;
                 }
-            }
+            });
             auto const count = static_cast<double>(pairs * images.extent(1));
             result.push_back({interval, pairs, count > 0 ? std::optional(std::sqrt(squares / count)) : std::nullopt});
         }

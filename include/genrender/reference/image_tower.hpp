@@ -76,6 +76,35 @@ public:
     /// The vector [projection_dim] of an image [3, height, width] with values in [0, 1], of any length. Work is shared
     /// out over `loop`. Throws shape_error unless there are three channels and pixels.
     std::vector<Real> operator()(strided_view<Real const, 3> image, any_loop const& loop = {}) const {
+        auto const x = convolved(image, loop);
+        auto means = means_of(x[0], loop);
+        auto hidden = stack<Real, 2>::uninitialized({1, config_.hidden_size});
+        hidden_(hidden.view(), means, loop);
+        silu(std::span<Real>(hidden.data(), hidden.size()));
+        std::vector<Real> vector(config_.projection_dim);
+        projection_(strided_view<Real, 2>(vector.data(), {1, vector.size()}), hidden, loop);
+        return vector;
+    }
+
+    /// What the last convolution says of each place of an image, before the gate: [channels, rows, columns], a row and a
+    /// column for as many pixels as the product of the strides. Takes and throws what the other call does.
+    stack<Real, 3> feature_map(strided_view<Real const, 3> image, any_loop const& loop = {}) const {
+        auto x = convolved(image, loop);
+        auto map = stack<Real, 3>::uninitialized({features(), x.grid().height, x.grid().width});
+        copy(map.view(), x.channels_first()[0]);
+        return map;
+    }
+
+private:
+    struct block {
+        conv2d<Real> conv;
+        group_norm<Real> norm;
+        bool adds;
+    };
+
+    std::size_t features() const { return config_.block_out_channels.back(); }
+
+    feature_maps<Real> convolved(strided_view<Real const, 3> image, any_loop const& loop) const {
         require_shape("image_tower", "image", image,
                       {3, std::max<std::size_t>(1, image.extent(1)), std::max<std::size_t>(1, image.extent(2))});
         feature_maps<Real> x(1, {image.extent(1), image.extent(2)}, 3);
@@ -96,23 +125,8 @@ public:
             }
             x = std::move(y);
         }
-        auto means = means_of(std::as_const(x)[0], loop);
-        auto hidden = stack<Real, 2>::uninitialized({1, config_.hidden_size});
-        hidden_(hidden.view(), means, loop);
-        silu(std::span<Real>(hidden.data(), hidden.size()));
-        std::vector<Real> vector(config_.projection_dim);
-        projection_(strided_view<Real, 2>(vector.data(), {1, vector.size()}), hidden, loop);
-        return vector;
+        return x;
     }
-
-private:
-    struct block {
-        conv2d<Real> conv;
-        group_norm<Real> norm;
-        bool adds;
-    };
-
-    std::size_t features() const { return config_.block_out_channels.back(); }
 
     static std::vector<block> take_blocks(image_tower_config const& config, weights<Real>& source) {
         std::vector<block> blocks;

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
+#include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/reference/clip_text_config_file.hpp>
 #include <genrender/reference/clip_text_encoder.hpp>
@@ -88,6 +89,10 @@ public:
     /// The vector of an image [3, height, width] with values in [0, 1]; it was trained on 128 x 128 pixels. Throws
     /// shape_error unless there are three channels and pixels.
     std::vector<Real> embed_image(strided_view<Real const, 3> image) const { return unit_vector(image_(image)); }
+
+    /// What the image tower's last convolution says of each place of an image: [channels, rows, columns], for
+    /// perceptual_errors. Takes and throws what embed_image does.
+    stack<Real, 3> image_features(strided_view<Real const, 3> image) const { return image_.feature_map(image); }
 
     /// The vector of a text in UTF-8, of which what exceeds the longest prompt is cut off. Throws value_error if it is
     /// not UTF-8.

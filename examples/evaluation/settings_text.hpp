@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// All settings that change the frames of a run as a text: what results are kept by.
+#pragma once
+
+#include "methods.hpp"
+
+#include <genrender/attention/attention_site.hpp>
+#include <genrender/pipeline/render_settings.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace genrender::examples {
+
+namespace detail {
+
+/// Lines `name = value`.
+class settings_writer {
+public:
+    settings_writer() { text_.precision(9); }
+
+    template <class T>
+    void operator()(char const* name, T const& value) {
+        text_ << name << " = ";
+        put(value);
+        text_ << '\n';
+    }
+    std::string text() const { return text_.str(); }
+
+private:
+    template <class T>
+    void put(T const& value) {
+        if constexpr (std::is_enum_v<T>) {
+            text_ << static_cast<long>(value);
+        } else {
+            text_ << value;
+        }
+    }
+    template <class T>
+    void put(std::optional<T> const& value) {
+        value ? put(*value) : void(text_ << "none");
+    }
+    void put(frame_index value) { text_ << value.value; }
+    template <class T>
+    void put(std::vector<T> const& values) {
+        for (auto const& value : values) {
+            put(value);
+            text_ << ' ';
+        }
+    }
+
+    std::ostringstream text_;
+};
+
+} // namespace detail
+
+/// Every setting of a run that its frames depend on, a line each; those that only cost memory or time are left out. What
+/// functions give is asked for at `sites` and in `branches` guidance branches. A setting that is added to the library and
+/// not named here does not compile, so that no result is kept under a key that does not know it.
+inline std::string settings_text(row_settings const& settings, std::vector<attention_site> const& sites,
+                                 std::uint32_t branches) {
+    detail::settings_writer write;
+    auto const& [steps, sigma_min, sigma_max, rho, sampler, noise, keyframes, correspondence, normalization, layers,
+                 alpha, injection, first_fill_share, average, window_begin, window_end, keyframe_storage,
+                 reuses_keyframes, frames_per_call, fills_last_call, calls_at_once] = settings;
+    static_cast<void>(reuses_keyframes); // frames are the same to the bit
+    static_cast<void>(frames_per_call);
+    static_cast<void>(fills_last_call);
+    static_cast<void>(calls_at_once);
+    write("steps", steps);
+    write("sigma_min", sigma_min);
+    write("sigma_max", sigma_max);
+    write("rho", rho);
+    write("sampler", sampler);
+    write("first_fill_share", first_fill_share);
+    write("average", average);
+    write("window_begin", window_begin);
+    write("window_end", window_end);
+    write("keyframe_storage", keyframe_storage);
+    {
+        auto const& [kind, background, T, seed, reading, rays] = noise;
+        write("noise.kind", kind);
+        write("noise.background", background);
+        write("noise.T", T);
+        write("noise.seed", seed);
+        write("noise.reading", reading);
+        static_cast<void>(rays); // the scene's own
+    }
+    {
+        auto const& [count, drawing, frames, seed] = keyframes;
+        write("keyframes.count", count);
+        write("keyframes.drawing", drawing);
+        write("keyframes.frames", frames);
+        write("keyframes.seed", seed);
+    }
+    {
+        auto const& [kind, footprint, texels] = correspondence;
+        auto const& [reach, match_cache_bytes, cached_frames] = footprint;
+        auto const& [T, reading, dilation] = texels;
+        static_cast<void>(match_cache_bytes);
+        static_cast<void>(cached_frames);
+        write("correspondence.kind", kind);
+        write("correspondence.footprint.reach", reach);
+        write("correspondence.texels.T", T);
+        write("correspondence.texels.reading", reading);
+        write("correspondence.texels.dilation", dilation);
+    }
+    {
+        auto const& [enabled, statistics, begin, end, least_pixels, fallback, on_noisy_latents] = normalization;
+        write("normalization.enabled", enabled);
+        write("normalization.statistics", statistics);
+        write("normalization.window_begin", begin);
+        write("normalization.window_end", end);
+        write("normalization.least_pixels", least_pixels);
+        write("normalization.fallback", fallback);
+        write("normalization.on_noisy_latents", on_noisy_latents);
+    }
+    {
+        auto const& [pre_attention, post_attention, keeps_own_copy] = injection;
+        write("injection.pre_attention", pre_attention);
+        write("injection.post_attention", post_attention);
+        write("injection.keeps_own_copy", keeps_own_copy);
+    }
+    for (auto const& site : sites) {
+        std::vector<bool> takes_part;
+        std::vector<float> alphas;
+        for (std::uint32_t branch = 0; branch < branches; ++branch) {
+            takes_part.push_back(layers(site, branch));
+        }
+        for (std::size_t step = 0; step < steps; ++step) {
+            alphas.push_back(alpha(step, site));
+        }
+        write(("layers of " + site.name).c_str(), takes_part);
+        write(("alpha of " + site.name).c_str(), alphas);
+    }
+    return write.text();
+}
+
+} // namespace genrender::examples
