@@ -123,7 +123,9 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     attention/extended_attention.hpp
     attention/feature_storage.hpp
     attention/host_features.hpp
+    attention/kept_variance.hpp
     attention/key_value_view.hpp
+    attention/length_correction.hpp
     attention/plain_attention.hpp
     attention/projected_features.hpp
     attention/scaled_dot_product.hpp
@@ -136,6 +138,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     sampling/karras_schedule.hpp
     sampling/noise_schedule.hpp
     sampling/preconditioning.hpp
+    sampling/run_demands.hpp
     sampling/run_shapes.hpp
     sampling/sampler.hpp
     sampling/sampler_arguments.hpp
@@ -149,11 +152,14 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/call_rows.hpp
     blending/mix_rows.hpp
     blending/mix_rows.inl
+    blending/mix_rows_keeping_variance.hpp
+    blending/mix_rows_keeping_variance.inl
     blending/padded_rows.hpp
     blending/row_bound.hpp
     blending/texel_weights.hpp
     injection/any_denoiser.hpp
     injection/feature_io.hpp
+    injection/graph_abilities.hpp
     injection/graph_pass.hpp
     injection/host_attention_call.hpp
     injection/injection_settings.hpp

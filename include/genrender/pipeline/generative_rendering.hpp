@@ -58,6 +58,8 @@ struct generative_rendering {
         shapes.mixes_rows = has_keyframes && settings.injection.post_attention;
         shapes.row_width = shapes.mixes_rows ? shapes.row_width : 0;
         shapes.lists_sources = false;
+        shapes.scales_logits = shapes.attends_to_stack && settings.injection.length_correction > 0;
+        shapes.keeps_variance = shapes.mixes_rows && settings.injection.variance.target != variance_target::none;
         shapes.banks = has_keyframes ? 1 : 0;
         shapes.storage = has_keyframes ? shapes.storage : feature_storage::same;
     }
@@ -86,8 +88,9 @@ struct generative_rendering {
                     return plan;
                 });
             }
-            return injector_type(bank, KF, std::move(plans), settings.injection,
-                                 [&passes](site_index site) { return passes.alpha(site); });
+            return injector_type(
+                bank, KF, std::move(plans), settings.injection,
+                [&passes](site_index site) { return passes.alpha(site); }, passes.logit_scale());
         });
     }
 };

@@ -5,6 +5,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/blending/blend_plans.hpp>
 #include <genrender/core/parallel.hpp>
@@ -71,6 +72,18 @@ public:
     /// alpha of eq. 6 at a site in this step.
     real_type alpha(site_index site) const { return settings().alpha(step_, run_->phi->sites()[site.value]); }
 
+    /// What logits are multiplied by where frames are joined, for processors, which it must outlive; empty if by 1.
+    logit_scale_function logit_scale() const {
+        auto const power = settings().injection.length_correction;
+        if (power == 0) {
+            return {};
+        }
+        return [this, power](site_index site, std::size_t joined_frames) {
+            attention_site const& of = run_->phi->sites()[site.value];
+            return length_correction(of.grid.size(), of.grid.size() * joined_frames, power);
+        };
+    }
+
     /// An empty bank for features of all places.
     feature_bank<features_type> new_bank() const {
         return {static_cast<std::size_t>(std::ranges::size(run_->phi->sites())), run_->phi->branches()};
@@ -90,7 +103,7 @@ public:
         }
         auto bank = new_bank();
         auto const participates = [this](attention_place place) { return takes_part(place); };
-        recorder<features_type> const record(bank, participates, extended, settings().keyframe_storage);
+        recorder<features_type> const record(bank, participates, extended, settings().keyframe_storage, logit_scale());
         auto const begin = clock::now();
         run_keyframes(to_view(std::as_const(z_KF)), KF, record);
         auto const denoiser = seconds_since(begin);
