@@ -155,8 +155,10 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/mix_rows_keeping_variance.hpp
     blending/mix_rows_keeping_variance.inl
     blending/padded_rows.hpp
+    blending/quality_weights.hpp
     blending/row_bound.hpp
     blending/texel_weights.hpp
+    injection/alpha_schedule.hpp
     injection/any_denoiser.hpp
     injection/feature_io.hpp
     injection/graph_abilities.hpp

@@ -105,9 +105,11 @@
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/mix_rows_keeping_variance.hpp>
 #include <genrender/blending/padded_rows.hpp>
+#include <genrender/blending/quality_weights.hpp>
 #include <genrender/blending/row_bound.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
+#include <genrender/injection/alpha_schedule.hpp>
 #include <genrender/injection/any_denoiser.hpp>
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/injection/graph_abilities.hpp>

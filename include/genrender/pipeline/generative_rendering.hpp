@@ -82,8 +82,10 @@ struct generative_rendering {
         passes.denoise_frames([&](std::span<frame_index const> frames) {
             blend_plans<real_type> plans;
             if (settings.injection.post_attention) {
+                auto const weights = settings.quality.at(passes.step(), settings.steps);
                 plans = passes.make_plans(frames, [&](auto const& map, frame_index i) {
-                    auto plan = make_blend_plan<real_type>(map, KF, i, settings.first_fill_share, settings.average);
+                    auto plan =
+                        make_blend_plan<real_type>(map, KF, i, settings.first_fill_share, settings.average, weights);
                     passes.report_coverage(map.grid(), i, plan.covered_count());
                     return plan;
                 });

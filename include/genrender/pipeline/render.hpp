@@ -57,6 +57,7 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
                   "render", "settings.injection.length_correction", settings.injection.length_correction,
                   "a finite number, 0 or more");
     require_kept_variance("render", settings.injection.variance);
+    require_quality_settings("render", settings.quality);
     require_value(settings.layers != nullptr, "render", "settings.layers", "empty", "a function");
     require_value(settings.alpha != nullptr, "render", "settings.alpha", "empty", "a function");
     evaluations(settings.sampler, settings.steps);
