@@ -197,6 +197,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     testing/correspondence_laws.hpp
     testing/denoiser_laws.hpp
     testing/law_report.hpp
+    testing/optional_call_laws.hpp
     testing/parallel_loop_laws.hpp
     testing/random_stack.hpp
     testing/sequence_method_laws.hpp)

@@ -25,9 +25,6 @@ TEST_SUITE("attention/length_correction") {
 
     /// The same call without the capability.
     struct call_without_scales : private scaling_call {
-        using scaling_call::scaling_call;
-        using typename scaling_call::features_type;
-        using typename scaling_call::real_type;
         using scaling_call::attend;
         using scaling_call::f;
         using scaling_call::frames;
@@ -35,7 +32,10 @@ TEST_SUITE("attention/length_correction") {
         using scaling_call::mix;
         using scaling_call::place;
         using scaling_call::query;
+        using scaling_call::scaling_call;
         using scaling_call::value;
+        using typename scaling_call::features_type;
+        using typename scaling_call::real_type;
     };
 
     std::vector<frame_index> const frames{{0}, {1}};
@@ -54,10 +54,8 @@ TEST_SUITE("attention/length_correction") {
         CHECK(length_correction(1, 5, 1) == 1.0);
         CHECK(length_correction(0, 5, 1) == 1.0);
     }
-    TEST_CASE("alike keys keep the share of their temperature: the entropy of a spread-out query grows by nothing") {
-        // n keys with logits 0 but for one of ln a: its weight is a / (a + n - 1). With n keys and n^2 keys the corrected
-        // one has a^2 / (a^2 + n^2 - 1), about the square of a / n against (a / n)^2: the same power of the odds.
-        auto const odds = [](double n, double logit, double scale) { return std::exp(scale * logit) / n; };
+    TEST_CASE("the odds of a key against n squared keys are the square of those against n") {
+        auto const odds = [](double keys, double logit, double scale) { return std::exp(scale * logit) / keys; };
         auto const scale = length_correction(10, 100, 1);
         CHECK(odds(100, 3, scale) == doctest::Approx(odds(10, 3, 1) * odds(10, 3, 1)));
     }
