@@ -65,6 +65,16 @@ TEST_SUITE("attention/length_correction") {
         CHECK_THROWS_AS(length_correction(4, 16, std::numeric_limits<double>::quiet_NaN()), value_error);
         CHECK_THROWS_AS(length_correction(4, 16, std::numeric_limits<double>::infinity()), value_error);
     }
+    TEST_CASE("the scale of a site is that of its own tokens, and none of a power of 0") {
+        std::vector<attention_site> sites(2);
+        sites[0].grid = {2, 2};
+        sites[1].grid = {16, 16};
+        auto const scale_of = length_scale(sites, 1);
+        CHECK(scale_of({0}, 4) == doctest::Approx(2));
+        CHECK(scale_of({0}, 1) == 1.0);
+        CHECK(scale_of({1}, 5) == length_correction(256, 1280, 1));
+        CHECK_FALSE(length_scale(sites, 0));
+    }
     TEST_CASE("each frame is scaled by the blocks that it attends to") {
         int const K = 0;
         attention_sources<int> sources(2);

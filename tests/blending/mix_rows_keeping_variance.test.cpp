@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] Eq. 6 that keeps variance: by hand, against the law of total variance written plainly, and on every layout.
+// Eq. 6 that keeps variance: by hand, against the law of total variance written plainly, and on every layout.
 #include <genrender/blending/mix_rows_keeping_variance.hpp>
 
 #include <genrender/core/linalg.hpp>

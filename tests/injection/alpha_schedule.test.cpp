@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] Schedules of alpha by hand.
+// Schedules of alpha by hand.
 #include <genrender/injection/alpha_schedule.hpp>
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 1, 6] The laws of scales and of kept variance can be broken, and are told by their sentences.
+// The laws of scales and of kept variance can be broken, and are told by their sentences.
 #include <genrender/testing/optional_call_laws.hpp>
 
 #include "broken_laws.hpp"

@@ -32,6 +32,22 @@ inline double length_correction(std::size_t own, std::size_t keys, double power)
 /// What the logits of a frame at a site are multiplied by whose tokens attend to so many frames' keys. Empty: 1.
 using logit_scale_function = std::function<double(site_index site, std::size_t joined_frames)>;
 
+/// length_correction with a power at each of some sites, of which every frame has the same tokens; empty with power 0.
+template <class Sites>
+logit_scale_function length_scale(Sites const& sites, double power) {
+    if (power == 0) {
+        return {};
+    }
+    std::vector<std::size_t> tokens;
+    for (attention_site const& site : sites) {
+        tokens.push_back(site.grid.size());
+    }
+    return [tokens = std::move(tokens), power](site_index site, std::size_t joined_frames) {
+        auto const own = tokens.at(site.value);
+        return length_correction(own, own * joined_frames, power);
+    };
+}
+
 /// Sets the scale of every frame by the number of blocks that it attends to. Does nothing without a function.
 template <class Features>
 void scale_by_length(attention_sources<Features>& sources, site_index site, logit_scale_function const& scale_of) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] Eq. 6 that gives back the variance which averaging takes: one more sweep over F, none over F_KF.
+// Eq. 6 that gives back the variance which averaging takes: one more sweep over F, none over F_KF.
 #pragma once
 
 #include <genrender/core/begin_header.inl>

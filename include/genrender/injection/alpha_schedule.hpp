@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] alpha by step and site: the schedules that have a name.
+// alpha of eq. 6 by step and site: the schedules that have a name.
 #pragma once
 
 #include <genrender/core/begin_header.inl>

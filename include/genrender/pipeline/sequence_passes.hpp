@@ -5,7 +5,6 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/blending/blend_plans.hpp>
 #include <genrender/core/parallel.hpp>
@@ -26,6 +25,7 @@
 #include <cstdint>
 #include <mutex>
 #include <ranges>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -72,17 +72,8 @@ public:
     /// alpha of eq. 6 at a site in this step.
     real_type alpha(site_index site) const { return settings().alpha(step_, run_->phi->sites()[site.value]); }
 
-    /// What logits are multiplied by where frames are joined, for processors, which it must outlive; empty if by 1.
-    logit_scale_function logit_scale() const {
-        auto const power = settings().injection.length_correction;
-        if (power == 0) {
-            return {};
-        }
-        return [this, power](site_index site, std::size_t joined_frames) {
-            attention_site const& of = run_->phi->sites()[site.value];
-            return length_correction(of.grid.size(), of.grid.size() * joined_frames, power);
-        };
-    }
+    /// What logits are multiplied by where frames are joined.
+    auto logit_scale() const { return length_scale(run_->phi->sites(), settings().injection.length_correction); }
 
     /// An empty bank for features of all places.
     feature_bank<features_type> new_bank() const {
@@ -102,8 +93,8 @@ public:
             copy(to_view(z_KF)[k], to_view(*z_)[KF[k].value]);
         }
         auto bank = new_bank();
-        auto const participates = [this](attention_place place) { return takes_part(place); };
-        recorder<features_type> const record(bank, participates, extended, settings().keyframe_storage, logit_scale());
+        auto const of = [this](attention_place place) { return takes_part(place); };
+        recorder<features_type> const record(bank, of, extended, settings().keyframe_storage, logit_scale());
         auto const begin = clock::now();
         run_keyframes(to_view(std::as_const(z_KF)), KF, record);
         auto const denoiser = seconds_since(begin);
@@ -141,9 +132,7 @@ public:
             grid_of_site.push_back(site.grid);
         }
         blend_plans<real_type> plans(std::move(grid_of_site), evaluation_);
-        std::vector<frame_index> different(frames.begin(), frames.end());
-        std::sort(different.begin(), different.end());
-        different.erase(std::unique(different.begin(), different.end()), different.end());
+        std::set<frame_index> const different(frames.begin(), frames.end());
         struct wanted_plan {
             grid_extents grid;
             Map const* map;
@@ -190,10 +179,8 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
-
-    static double seconds_since(clock::time_point start) {
-        return std::chrono::duration<double>(clock::now() - start).count();
-    }
+    using seconds = std::chrono::duration<double>;
+    static double seconds_since(clock::time_point start) { return seconds(clock::now() - start).count(); }
 
     /// The keyframe pass of a denoiser that can end it early, or of one that estimates frames that nobody asked for.
     void run_keyframes(strided_view<real_type const, 4> z_KF, std::vector<frame_index> const& KF,
@@ -248,9 +235,9 @@ private:
         }
         begin = clock::now();
         estimate(to_view(filled_x0), to_view(std::as_const(filled_z)), frames, processor);
-        auto const seconds = seconds_since(begin);
+        auto const taken = seconds_since(begin);
         copy(x0, to_view(std::as_const(filled_x0)).slice(0, own));
-        return seconds;
+        return taken;
     }
 
     /// Runs `body` for each call, as many at once as the settings let.
@@ -299,8 +286,8 @@ private:
             run_->meter->add(own);
         });
         auto const share = in_denoiser / std::max(in_denoiser + outside, 1e-12);
-        auto const seconds = seconds_since(pass_start);
-        run_->report->add_seconds(seconds * share, seconds * (1 - share));
+        auto const taken = seconds_since(pass_start);
+        run_->report->add_seconds(taken * share, taken * (1 - share));
     }
 
     sequence_run<Phi, Map> const* run_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 1, 6] The laws of calls that scale logits and keep variance, as a part of check_attention_call_laws.
+// The laws of calls that scale logits and keep variance, as a part of check_attention_call_laws.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
@@ -10,6 +10,8 @@
 #include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/sparse_rows.hpp>
+#include <genrender/core/stack.hpp>
+#include <genrender/sampling/denoiser.hpp>
 #include <genrender/testing/denoiser_laws.hpp>
 #include <genrender/testing/law_report.hpp>
 
@@ -73,9 +75,10 @@ typename Call::features_type attend_to(Call& call, MakeSources const& make_sourc
 }
 
 /// The laws of scaling_attention_call on the calls of a trial, whose estimates with plain attention are `plain_x0`.
-template <class Trials, class Estimates>
-void check_scaling_laws(law_report& report, Trials const& trials, Estimates const& plain_x0, double tolerance) {
-    using features = typename Trials::features_type;
+template <denoiser Phi>
+void check_scaling_laws(law_report& report, denoiser_trials<Phi> const& trials,
+                        stack<typename Phi::real_type, 4> const& plain_x0, double tolerance) {
+    using features = typename Phi::features_type;
     std::atomic<bool> is_scaling = false;
     auto const scaled = [&](double scale, bool by_lists) {
         auto const attend = [&, scale, by_lists](auto& call) {
@@ -94,11 +97,12 @@ void check_scaling_laws(law_report& report, Trials const& trials, Estimates cons
         };
         return trials.estimate(attend);
     };
-    auto const as_it_is = trials.estimate([](auto& call) {
+    auto const unscaled = [](auto& call) {
         return attend_to(call, [](features const& K, features const& V, std::size_t count) {
             return extended_attention_sources(K, V, count);
         });
-    });
+    };
+    auto const as_it_is = trials.estimate(unscaled);
     auto const differs = [&](auto const& x0) { return !std::equal(x0.data(), x0.data() + x0.size(), as_it_is.data()); };
     require_same(report, "scaling_attention_call: a scale of 1 changes no bit", "x0", scaled(1, false), as_it_is);
     if (!is_scaling || !differs(plain_x0)) {
@@ -112,11 +116,11 @@ void check_scaling_laws(law_report& report, Trials const& trials, Estimates cons
 }
 
 /// The laws of variance_keeping_call on the calls of a trial; F_of(place) are the outputs of an ended call there.
-template <class Trials, class Estimates, class OutputOf>
-void check_variance_laws(law_report& report, Trials const& trials, Estimates const& plain_x0, double tolerance,
-                         OutputOf const& F_of) {
-    using features = typename Trials::features_type;
-    using Real = typename Trials::real_type;
+template <denoiser Phi, class OutputOf>
+void check_variance_laws(law_report& report, denoiser_trials<Phi> const& trials,
+                         stack<typename Phi::real_type, 4> const& plain_x0, double tolerance, OutputOf const& F_of) {
+    using features = typename Phi::features_type;
+    using Real = typename Phi::real_type;
     std::vector<std::size_t> mirrored;
     for (std::size_t i = 0; i < trials.frames.size(); ++i) {
         mirrored.push_back(trials.frames.size() - 1 - i);
