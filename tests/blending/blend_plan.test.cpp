@@ -395,6 +395,6 @@ TEST_SUITE("blending/blend_plan") {
             }
         }
         CHECK(entries > 4000);
-        CHECK(fewer > 50);
+        CHECK(fewer > 30);
     }
 }
