@@ -124,6 +124,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     attention/feature_storage.hpp
     attention/host_features.hpp
     attention/kept_variance.hpp
+    attention/key_counts.hpp
     attention/key_value_view.hpp
     attention/length_correction.hpp
     attention/plain_attention.hpp
@@ -155,6 +156,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/mix_rows_keeping_variance.hpp
     blending/mix_rows_keeping_variance.inl
     blending/padded_rows.hpp
+    blending/point_counts.hpp
     blending/quality_weights.hpp
     blending/row_bound.hpp
     blending/texel_weights.hpp

@@ -44,6 +44,7 @@ struct injection_options {
     std::string preset;                ///< empty: the library's defaults
     std::optional<double> temperature; ///< none: the preset's, as with all that follow
     std::string variance;
+    bool counts_points = false;
     std::string quality_exponent; ///< `P`, or `FROM:TO`
     std::optional<double> quality_threshold;
     float alpha = 0.7f;
@@ -67,6 +68,9 @@ struct injection_options {
             "variance kept); what else is told goes before it");
         add("--variance", variance, variance_names,
             "that eq. 6 keeps: none (the paper's), total (of all that is averaged) or sources (of keyframes)");
+        ours.add_flag(
+            "--count-points", counts_points,
+            "keys that show one surface point count together for one (the logarithm of their number is taken off)");
         ours.add_option("--alpha", alpha, "of post-attention injection (eq. 6), 0 to 1")
             ->capture_default_str()
             ->check(CLI::Range(0.0, 1.0).description(""))
@@ -114,6 +118,7 @@ struct injection_options {
         if (!variance.empty()) {
             settings.injection.variance.target = value_in(variance_names, variance);
         }
+        settings.injection.counts_points = settings.injection.counts_points || counts_points;
         if (!quality_exponent.empty()) {
             auto const [from, to] = exponents();
             require_number("--quality-exponent", from);

@@ -120,6 +120,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
         told["alpha"] = injected.alpha;
         told["alpha_schedule"] = injected.schedule;
         told["keyframe_drawing"] = injected.drawing;
+        told["counts_points"] = settings.injection.counts_points;
         told["variance"] = name_in(injection_options::variance_names, settings.injection.variance.target);
         told["feature_storage"] = name_in(storage_names, settings.keyframe_storage);
         told["pre_attention"] = settings.injection.pre_attention;

@@ -74,6 +74,7 @@
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/host_features.hpp>
 #include <genrender/attention/kept_variance.hpp>
+#include <genrender/attention/key_counts.hpp>
 #include <genrender/attention/key_value_view.hpp>
 #include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
@@ -105,6 +106,7 @@
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/mix_rows_keeping_variance.hpp>
 #include <genrender/blending/padded_rows.hpp>
+#include <genrender/blending/point_counts.hpp>
 #include <genrender/blending/quality_weights.hpp>
 #include <genrender/blending/row_bound.hpp>
 #include <genrender/blending/texel_weights.hpp>

@@ -376,4 +376,18 @@ TEST_SUITE("injection/feature_io") {
         injector<features, double> const unmixed(bank, KF, plans, settings);
         CHECK_NOTHROW((inputs_at<features, double>(unmixed, place, frames)));
     }
+    TEST_CASE("counts of keys are refused by a static graph") {
+        using features = host_features<double>;
+        feature_bank<features> bank(1, 2);
+        auto const f_KF = random_features<double>({KF.size(), tokens, channels}, 2);
+        auto const counts = [](site_index, frame_index) { return std::vector<float>(KF.size() * tokens, 0.5F); };
+        recorder<features> const record(bank, always, true, feature_storage::same, {}, counts);
+        auto const text = "inputs_at: keys are counted, expected counts_points to be false for a static graph";
+        CHECK_THROWS_WITH_AS((inputs_at<features, double>(record, place, KF)), text, value_error);
+        record_features(record, place, f_KF, f_KF);
+        injection_settings settings;
+        settings.counts_points = true;
+        injector<features, double> const inject(bank, KF, {}, settings);
+        CHECK_THROWS_WITH_AS((inputs_at<features, double>(inject, place, frames)), text, value_error);
+    }
 }

@@ -22,5 +22,10 @@ TEST_SUITE("injection/graph_abilities") {
                              "do not keep the variance of eq. 6",
                              value_error);
         CHECK_NOTHROW(require_abilities("my_graphs", {.scales_logits = true, .keeps_variance = true}, shapes));
+        shapes.counts_keys = true;
+        CHECK_THROWS_WITH_AS(require_abilities("my_graphs", {.scales_logits = true, .keeps_variance = true}, shapes),
+                             "my_graphs: shapes.counts_keys is true, expected counts_points to be false for a static "
+                             "graph",
+                             value_error);
     }
 }

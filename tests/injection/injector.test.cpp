@@ -348,4 +348,41 @@ TEST_SUITE("injection/injector") {
         CHECK(equal_bits(F, F_hat));
         CHECK_FALSE(equal_bits(F, world.inject()(call)));
     }
+    TEST_CASE("keys of one surface point count together for one where settings say so") {
+        recorded_world<double> const world;
+        injection_settings settings;
+        settings.post_attention = false;
+        auto const uncounted = world.inject(settings);
+        settings.counts_points = true;
+        auto const counted = world.inject(settings);
+        auto call = world.call(taken);
+        auto const F = counted(call);
+        auto const K = call.key(call.f());
+        auto const V = call.value(call.f());
+        auto const& kept = *world.bank.find(taken);
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            auto const counts = point_counts(world.plan({1}, frames[i]).rows(), KF.size());
+            std::vector<double> const numbers(counts.begin(), counts.end());
+            std::vector<key_value_view<double>> blocks;
+            auto const add = [&](auto const& keys, auto const& values, std::size_t frame) {
+                blocks.push_back({keys.view()[frame], values.view()[frame],
+                                  strided_view<double const, 1>(numbers.data() + blocks.size() * tokens, {tokens})});
+            };
+            add(K, V, i);
+            for (std::size_t k = 0; k < KF.size(); ++k) {
+                add(*kept.K_KF, *kept.V_KF, k);
+            }
+            stack<double, 2> expected({tokens, channels});
+            scaled_dot_product(expected.view(), call.query(call.f()).view()[i], blocks, 2);
+            for (std::size_t t = 0; t < tokens; ++t) {
+                for (std::size_t c = 0; c < channels; ++c) {
+                    CHECK(F.view()(i, t, c) == doctest::Approx(expected(t, c)).epsilon(1e-12));
+                }
+            }
+        }
+        CHECK(counted.counts_keys(taken));
+        CHECK_FALSE(counted.counts_keys({{0}, 0}));
+        CHECK_FALSE(uncounted.counts_keys(taken));
+        CHECK_FALSE(equal_bits(F, uncounted(call)));
+    }
 }

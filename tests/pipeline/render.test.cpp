@@ -132,6 +132,12 @@ TEST_SUITE("pipeline/render") {
         CHECK(difference(full, changed([](auto& s) { s.keyframes.drawing = keyframe_drawing::held; })) > 1e-9);
         CHECK(difference(full, changed([](auto& s) { s.injection.length_correction = 1; })) > 1e-9);
         CHECK(difference(full, changed([](auto& s) { s.injection.variance.target = variance_target::total; })) > 1e-9);
+        auto const counted = changed([](auto& s) { s.injection.counts_points = true; });
+        CHECK(difference(full, counted) > 1e-9);
+        CHECK(difference(no_post, changed([](auto& s) { // makes plans all the same
+                             s.injection.post_attention = false;
+                             s.injection.counts_points = true;
+                         })) > 1e-9);
         CHECK(difference(full, changed([](auto& s) { s.average = texel_average::winner; })) > 1e-9);
         CHECK(difference(full, changed([](auto& s) { s.quality.exponent_end = 6; })) > 1e-9);
         CHECK(difference(full, changed([](auto& s) { s.quality.exponent_begin = 0; })) > 1e-9);

@@ -26,6 +26,12 @@ TEST_SUITE("sampling/run_demands") {
                              "call_type has no `scales_logits`",
                              value_error);
         shapes.scales_logits = false;
+        shapes.counts_keys = true;
+        CHECK_THROWS_WITH_AS(require_demands<names_a_plain_call>(shapes),
+                             "render: settings.injection.counts_points is true, expected false for a denoiser whose "
+                             "call_type has no `counts_keys`",
+                             value_error);
+        shapes.counts_keys = false;
         shapes.keeps_variance = true;
         CHECK_THROWS_WITH_AS(require_demands<names_a_plain_call>(shapes),
                              "render: settings.injection.variance is to be kept, expected variance_target::none for a "

@@ -26,6 +26,8 @@ public:
 
     static constexpr bool scales_logits = true; ///< scaling_attention_call, as far as the engine's call is one
 
+    static constexpr bool counts_keys = true; ///< counting_attention_call, the same
+
     /// Which site, which guidance branch.
     virtual attention_place place() const = 0;
     /// Which frame of the animation each entry of the frame axis is.

@@ -25,6 +25,9 @@ struct key_value_block {
     Features const* K = nullptr; ///< keys, a stack [frames, tokens, channels]; not owned
     Features const* V = nullptr; ///< values, of the same frames and tokens as K; not owned
     std::size_t frame = 0;       ///< entry of the frame axis of both
+    /// [tokens] How many keys each key counts for, whole or not, above 0: its logarithm is added to the logits. Not owned;
+    /// null for one each.
+    float const* counts = nullptr;
 };
 
 /// What the lists of blocks of all frames amount to.
@@ -130,6 +133,15 @@ public:
         scales_ = std::all_of(scales.begin(), scales.end(), is_one) ? std::vector<double>{} : std::move(scales);
     }
 
+    /// Whether some key does not count for one, which the pattern does not say.
+    bool counts_keys() const {
+        return std::any_of(lists_.begin(), lists_.end(), [](block_list const& blocks) {
+            return std::any_of(blocks.begin(), blocks.end(), [](auto const& block) { return block.counts != nullptr; });
+        });
+    }
+    /// Sets what the keys of a block of frame i count for; lists and pattern stay.
+    void set_counts(std::size_t i, std::size_t block, float const* counts) { lists_[i][block].counts = counts; }
+
     /// Number of frames.
     std::size_t size() const { return lists_.size(); }
     /// Whether there is no frame.
@@ -168,7 +180,7 @@ public:
         sources.scales_ = scales_;
         for (std::size_t i = 0; i < lists_.size(); ++i) {
             for (auto const& block : lists_[i]) {
-                sources.lists_[i].push_back({other(block.K), other(block.V), block.frame});
+                sources.lists_[i].push_back({other(block.K), other(block.V), block.frame, block.counts});
             }
         }
         auto const& [meaning, K, V, K_KF, V_KF, joined, left_out] = pattern_;

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/attention_call.hpp>
+#include <genrender/attention/key_counts.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
 
@@ -72,7 +73,8 @@ void scale_by_length(attention_sources<Features>& sources, site_index site, logi
 template <class Call>
 concept scaling_attention_call = attention_call<Call> && static_cast<bool>(Call::scales_logits);
 
-/// `call.attend(Q, sources)`. Throws value_error if sources are scaled and the call is no scaling_attention_call.
+/// `call.attend(Q, sources)`. Throws value_error if sources are scaled and the call is no scaling_attention_call, or count
+/// keys and it is no counting_attention_call.
 template <attention_call Call>
 typename Call::features_type attend_scaled(Call& call, typename Call::features_type const& Q,
                                            attention_sources<typename Call::features_type> const& sources) {
@@ -80,6 +82,13 @@ typename Call::features_type attend_scaled(Call& call, typename Call::features_t
         if (sources.is_scaled()) {
             throw value_error("attend_scaled: logits are scaled, expected a length_correction of 0 for an attention "
                               "call without `scales_logits`");
+        }
+    }
+    if constexpr (!counting_attention_call<Call>) {
+        if (sources.counts_keys()) {
+            throw value_error(
+                "attend_scaled: keys are counted, expected counts_points to be false for an attention call "
+                "without `counts_keys`");
         }
     }
     return call.attend(Q, sources);

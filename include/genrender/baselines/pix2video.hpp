@@ -22,7 +22,7 @@ namespace genrender {
 /// Frames are denoised in their order, one call of the denoiser after the other, so the run's loop has nothing to
 /// share; a larger `settings.frames_per_call` gives the engine more at once. It needs an engine that calls back: what a
 /// static graph is given (feature_io) always includes a frame's own keys. Of the settings it leaves unread: keyframes,
-/// correspondence, alpha, pre_attention, post_attention, keeps_own_copy, variance, first_fill_share. Logits are scaled by
+/// correspondence, alpha, pre_attention, post_attention, keeps_own_copy, counts_points, variance, first_fill_share. Logits are scaled by
 /// `settings.injection.length_correction` where a frame attends to two others.
 struct pix2video {
     /// None.
@@ -49,7 +49,7 @@ struct pix2video {
         shapes.row_width = 0;
         shapes.lists_sources = in_window > 0;
         shapes.scales_logits = in_window > 0 && settings.injection.length_correction > 0;
-        shapes.keeps_variance = false;
+        shapes.counts_keys = shapes.keeps_variance = false;
         shapes.has_plain_steps = in_window < settings.steps;
         shapes.banks = in_window > 0 ? 2 : 0;
         shapes.storage = feature_storage::same;

@@ -25,7 +25,7 @@ namespace genrender {
 ///
 /// Keyframes are drawn as `settings.keyframes` says; TokenFlow's own draw is keyframe_drawing::stratified. The report's
 /// coverage counts tokens on objects that a neighbouring keyframe shows. Of the settings it leaves unread: alpha,
-/// pre_attention, post_attention, keeps_own_copy, variance, first_fill_share, and texel_reading::average, of which it takes
+/// pre_attention, post_attention, keeps_own_copy, counts_points, variance, first_fill_share, and texel_reading::average, of which it takes
 /// the token of greatest weight. Keyframes attend to each other with logits scaled by `settings.injection.length_correction`.
 struct tokenflow {
     /// KF of a step in the window. Throws as draw_keyframes does.
@@ -51,7 +51,7 @@ struct tokenflow {
         shapes.joins_keyframes = shapes.leaves_out = shapes.lists_sources = false;
         shapes.mixes_rows = has_keyframes;
         shapes.scales_logits = has_keyframes && settings.injection.length_correction > 0;
-        shapes.keeps_variance = false;
+        shapes.counts_keys = shapes.keeps_variance = false;
         shapes.row_width = std::min<std::size_t>(shapes.keyframes, 2);
         shapes.banks = has_keyframes ? 1 : 0;
         shapes.storage = has_keyframes ? shapes.storage : feature_storage::same;

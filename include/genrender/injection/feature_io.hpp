@@ -55,6 +55,14 @@ void require_abilities_for(feature_inputs<Features, Real> const& inputs, graph_a
     }
 }
 
+/// Throws value_error for a pass that counts keys, which no static graph is told.
+template <class Pass>
+void require_uncounted(Pass const& pass, attention_place place) {
+    if (pass.counts_keys(place)) {
+        throw value_error("inputs_at: keys are counted, expected counts_points to be false for a static graph");
+    }
+}
+
 } // namespace detail
 
 /// The extra inputs that plain attention asks for: none.
@@ -73,6 +81,7 @@ feature_inputs<Features, Real> inputs_at(recorder<Features> const& pass, attenti
     inputs.attends_to_stack = pass.attends_to_stack(place);
     inputs.is_recorded = pass.records(place);
     inputs.scales = pass.scales(place, frames.size());
+    detail::require_uncounted(pass, place);
     detail::require_abilities_for(inputs, abilities);
     pass.note_question(place);
     return inputs;
@@ -84,6 +93,7 @@ template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(injector<Features, Real> const& pass, attention_place place,
                                          std::span<frame_index const> frames, graph_abilities abilities = {}) {
     feature_inputs<Features, Real> inputs;
+    detail::require_uncounted(pass, place);
     inputs.f_KF = pass.joined_features(place);
     if (inputs.f_KF != nullptr) {
         inputs.scales = pass.scales(place, frames);

@@ -27,6 +27,7 @@ inline void require_abilities(char const* function, graph_abilities abilities, r
     };
     require(abilities.scales_logits || !shapes.scales_logits, "shapes.scales_logits",
             "a length_correction of 0 for graphs that do not scale logits");
+    require(!shapes.counts_keys, "shapes.counts_keys", "counts_points to be false for a static graph");
     require(abilities.keeps_variance || !shapes.keeps_variance, "shapes.keeps_variance",
             "variance_target::none for graphs that do not keep the variance of eq. 6");
 }

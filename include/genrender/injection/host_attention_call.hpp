@@ -11,6 +11,7 @@
 #include <genrender/injection/post_attention.hpp>
 
 #include <cstddef>
+#include <deque>
 #include <span>
 #include <utility>
 #include <vector>
@@ -45,6 +46,7 @@ public:
     using features_type = host_features<Real>; ///< features in host memory
 
     static constexpr bool scales_logits = true; ///< scaling_attention_call
+    static constexpr bool counts_keys = true;   ///< counting_attention_call
 
     /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]. Throws shape_error if f
     /// has another number of frames. `frames`, f and `module` must outlive the call.
@@ -82,9 +84,15 @@ public:
         auto F = features_type::allocate(Q.extents());
         loop_(sources.size(), [&](std::size_t i) {
             std::vector<key_value_view<Real>> blocks;
+            std::deque<std::vector<Real>> counts; // of blocks that have some
             blocks.reserve(sources[i].size());
             for (auto const& block : sources[i]) {
                 blocks.push_back({rows_of(*block.K, block.frame), rows_of(*block.V, block.frame)});
+                if (block.counts != nullptr) {
+                    auto const tokens = blocks.back().K.extent(0);
+                    auto const& of = counts.emplace_back(block.counts, block.counts + tokens);
+                    blocks.back().counts = strided_view<Real const, 1>(of.data(), {tokens});
+                }
             }
             scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads(), loop_,
                                static_cast<Real>(sources.scale(i)));

@@ -22,6 +22,9 @@ struct injection_settings {
     /// (length_correction): 0 leaves them as the paper has them, 1 is the whole correction, 1/2 its square root. The
     /// baselines read it as well.
     double length_correction = 0;
+    /// Whether the keys of eqs. 3 and 5 that show one surface point count together for one (point_counts): -log of their
+    /// number is added to their logits. Needs correspondences with pre-attention alone, too.
+    bool counts_points = false;
     kept_variance variance; ///< the variance that eq. 6 keeps; the default is eq. 6 as the paper has it
 };
 

@@ -5,9 +5,11 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/kept_variance.hpp>
+#include <genrender/attention/key_counts.hpp>
 #include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/blending/blend_plans.hpp>
+#include <genrender/blending/point_counts.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/injection/injection_settings.hpp>
 #include <genrender/injection/pre_attention.hpp>
@@ -32,7 +34,7 @@ public:
     using alpha_function = std::function<Real(site_index)>;
 
     /// Injects from `bank`, recorded of `keyframes` in this order; both must outlive the injector. `plans` hold those of
-    /// the frames of its calls; post-attention alone reads them. Logits are multiplied by `scale_of`.
+    /// the frames of its calls; post-attention and counts of points alone read them. Logits are multiplied by `scale_of`.
     injector(
         feature_bank<Features> const& bank, std::span<frame_index const> keyframes, blend_plans<Real> plans,
         injection_settings settings = {}, alpha_function alpha = [](site_index) { return Real(paper_alpha); },
@@ -49,14 +51,20 @@ public:
         auto const* const kept = bank_->find(call.place());
         projected_features<Features> const own = projections_of(call, call.f());
         auto sources = own_attention_sources(own.K, own.V, frames.size());
+        std::vector<std::vector<float>> counts;
         if (kept != nullptr && settings_.pre_attention) {
             require_value(kept->K_KF && kept->V_KF, "injector", "K_KF", "missing", "keyframes recorded by callbacks");
             std::vector<std::optional<std::size_t>> drops;
             for (auto const frame : frames) {
                 drops.push_back(left_out(frame));
             }
-            sources =
-                injected_attention_sources(own.K, own.V, *kept->K_KF, *kept->V_KF, keyframes_.size(), std::move(drops));
+            sources = injected_attention_sources(own.K, own.V, *kept->K_KF, *kept->V_KF, keyframes_.size(), drops);
+            if (settings_.counts_points) {
+                auto const of_frame = [this](site_index site, frame_index frame) {
+                    return point_counts(plans_.rows(site, frame), keyframes_.size());
+                };
+                counts = count_keys(sources, call.place().site, frames, of_frame, drops);
+            }
         }
         scale_by_length(sources, call.place().site, scale_of_);
         Features F_hat = attend_scaled(call, own.Q, sources);
@@ -104,6 +112,11 @@ public:
         }
         auto const is_one = [](double scale) { return scale == 1.0; };
         return std::all_of(scales.begin(), scales.end(), is_one) ? std::vector<double>{} : scales;
+    }
+
+    /// Whether keys at a place do not count for one each.
+    bool counts_keys(attention_place place) const {
+        return settings_.counts_points && settings_.pre_attention && !is_plain_at(place);
     }
 
     /// F_KF that eq. 6 mixes in at a place; null where nothing is injected.

@@ -71,10 +71,8 @@ public:
 
     /// alpha of eq. 6 at a site in this step.
     real_type alpha(site_index site) const { return settings().alpha(step_, run_->phi->sites()[site.value]); }
-
     /// What logits are multiplied by where frames are joined.
     auto logit_scale() const { return length_scale(run_->phi->sites(), settings().injection.length_correction); }
-
     /// An empty bank for features of all places.
     feature_bank<features_type> new_bank() const {
         return {static_cast<std::size_t>(std::ranges::size(run_->phi->sites())), run_->phi->branches()};
@@ -84,7 +82,8 @@ public:
     /// keeps their features at the places that take part; with `extended` they attend to each other (eq. 3). Throws
     /// value_error if the denoiser did not run the processor at one of these places, or cannot store features as the
     /// settings say.
-    feature_bank<features_type> record_keyframes(std::vector<frame_index> const& KF, bool extended) const {
+    feature_bank<features_type> record_keyframes(std::vector<frame_index> const& KF, bool extended,
+                                                 key_count_function counts = {}) const {
         run_->meter->begin(step_, render_pass::keyframes, KF.size());
         auto const start = clock::now();
         auto const& shape = z_->shape();
@@ -94,7 +93,8 @@ public:
         }
         auto bank = new_bank();
         auto const of = [this](attention_place place) { return takes_part(place); };
-        recorder<features_type> const record(bank, of, extended, settings().keyframe_storage, logit_scale());
+        recorder<features_type> const record(bank, of, extended, settings().keyframe_storage, logit_scale(),
+                                             std::move(counts));
         auto const begin = clock::now();
         run_keyframes(to_view(std::as_const(z_KF)), KF, record);
         auto const denoiser = seconds_since(begin);
