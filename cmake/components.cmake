@@ -123,7 +123,10 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     attention/extended_attention.hpp
     attention/feature_storage.hpp
     attention/host_features.hpp
+    attention/kept_variance.hpp
+    attention/key_counts.hpp
     attention/key_value_view.hpp
+    attention/length_correction.hpp
     attention/plain_attention.hpp
     attention/projected_features.hpp
     attention/scaled_dot_product.hpp
@@ -139,6 +142,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     sampling/lent_latents.hpp
     sampling/noise_schedule.hpp
     sampling/preconditioning.hpp
+    sampling/run_demands.hpp
     sampling/run_shapes.hpp
     sampling/sampler.hpp
     sampling/sampler_arguments.hpp
@@ -152,11 +156,17 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/call_rows.hpp
     blending/mix_rows.hpp
     blending/mix_rows.inl
+    blending/mix_rows_keeping_variance.hpp
+    blending/mix_rows_keeping_variance.inl
     blending/padded_rows.hpp
+    blending/point_counts.hpp
+    blending/quality_weights.hpp
     blending/row_bound.hpp
     blending/texel_weights.hpp
+    injection/alpha_schedule.hpp
     injection/any_denoiser.hpp
     injection/feature_io.hpp
+    injection/graph_abilities.hpp
     injection/graph_pass.hpp
     injection/host_attention_call.hpp
     injection/injection_settings.hpp
@@ -196,6 +206,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     testing/denoiser_laws.hpp
     testing/latent_lender_laws.hpp
     testing/law_report.hpp
+    testing/optional_call_laws.hpp
     testing/parallel_loop_laws.hpp
     testing/random_stack.hpp
     testing/sequence_method_laws.hpp)

@@ -4,6 +4,7 @@
 #include <genrender/blending/mix_rows.hpp>
 
 #include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/mix_rows_keeping_variance.hpp>
 #include <genrender/core/linalg.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/core/stack.hpp>
@@ -65,6 +66,15 @@ template <class T>
 stack<T, 3> filled(std::array<std::size_t, 3> const& extents) {
     stack<T, 3> values(extents);
     std::fill_n(values.data(), values.size(), static_cast<T>(0.25f));
+    return values;
+}
+
+/// Numbers of variance 1, so that there is something to keep.
+stack<float, 3> random_values(std::array<std::size_t, 3> const& extents) {
+    stack<float, 3> values(extents);
+    for (std::uint32_t e = 0; e < values.size(); ++e) {
+        values.data()[e] = static_cast<float>(normal_value(1, random_stream::test, {e, 0, 0}));
+    }
     return values;
 }
 
@@ -132,6 +142,22 @@ void mix_five_random_sources(benchmark::State& state) {
     mix_frames<float>(state, {&worst_plan(static_cast<std::size_t>(state.range(0)))}, 1);
 }
 BENCHMARK(mix_five_random_sources)->Apply(shapes);
+
+/// Eq. 6 that keeps variance, beside eq. 6 that does not: moments beside the sums, and one more sweep over F.
+void keeping_variance(benchmark::State& state) {
+    auto const tokens = static_cast<std::size_t>(state.range(0));
+    auto const channels = static_cast<std::size_t>(state.range(1));
+    auto const F_KF = random_values({KF.size(), tokens, channels});
+    auto kept = random_values({1, tokens, channels});
+    auto mixed = kept;
+    auto const rows = plans_of(tokens)[7].rows();
+    time_against(
+        state, {"mix rows"},
+        [&] { mix_rows_keeping_variance(kept.view()[0], F_KF, rows, 0.7f, {variance_target::total}); },
+        [&] { mix_rows(mixed.view()[0], F_KF, rows, 0.7f); });
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(tokens));
+}
+BENCHMARK(keeping_variance)->Apply(shapes);
 
 /// More than the caches hold.
 void mix_many_frames(benchmark::State& state) {

@@ -24,8 +24,8 @@ struct correspondence_options {
                                                                     {"position", canonical_coordinates::position}};
     static constexpr named<correspondence_kind> correspondence_names[]{{"footprint", correspondence_kind::footprint},
                                                                        {"texels", correspondence_kind::texel_grid}};
-    static constexpr named<texel_average> average_names[]{{"plain", texel_average::plain},
-                                                          {"quality", texel_average::by_quality}};
+    static constexpr named<texel_average> average_names[]{
+        {"plain", texel_average::plain}, {"quality", texel_average::by_quality}, {"winner", texel_average::winner}};
     static constexpr named<noise_reading> reading_names[]{{"surface", noise_reading::surface},
                                                           {"nearest", noise_reading::nearest_texel},
                                                           {"bilinear", noise_reading::bilinear_texel}};
@@ -56,8 +56,8 @@ struct correspondence_options {
         add("--correspondence", correspondence, correspondence_names,
             "footprint (of a feature cell on the surface), or texels: the paper's");
         add("--average", average, average_names,
-            "of keyframes: by quality (how many pixels see the surface, how pure the cell), or plain,\n"
-            "which is the paper's (quality; with texels plain)");
+            "of keyframes: by quality (how many pixels see the surface, how pure the cell), winner (the best\n"
+            "alone) or plain, which is the paper's (quality; with texels plain)");
         add("--noise-reading", noise, reading_names,
             "surface (white in every frame), or one texel: nearest (the paper's), bilinear");
         add("--background", background, background_names,
@@ -73,6 +73,21 @@ struct correspondence_options {
             ->capture_default_str()
             ->check(texels)
             ->type_name("T");
+    }
+
+    /// Lets what was not told to a command line that was parsed be what `settings` say.
+    template <class Real>
+    void default_to(render_settings<Real> const& settings, CLI::App const& app) {
+        auto const is_told = [&app](char const* name) { return app.get_option(name)->count() > 0; };
+        if (!is_told("--correspondence")) {
+            correspondence = name_in(correspondence_names, settings.correspondence.kind);
+        }
+        if (!is_told("--noise-reading")) {
+            noise = name_in(reading_names, settings.noise.reading);
+        }
+        if (!is_told("--average") && settings.average == texel_average::plain) {
+            average = "plain"; // Else empty: it follows the correspondence.
+        }
     }
 
     /// Turns `settings` to what was told. Throws CLI::ValidationError where options contradict each other.

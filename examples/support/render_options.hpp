@@ -4,6 +4,7 @@
 
 #include "../scenes/scenes.hpp"
 #include "correspondence_options.hpp"
+#include "injection_options.hpp"
 #include "names.hpp"
 #include "program.hpp"
 
@@ -67,6 +68,7 @@ struct render_options {
     bool is_check = false;      ///< tells what the maps are good for and renders nothing
     bool is_plan = false;       ///< tells what the run will take and renders nothing
     correspondence_options correspondence;
+    injection_options injection;
     render_settings<float> settings;
 };
 
@@ -211,16 +213,12 @@ inline render_options parse_render_options(int argc, char const* const* argv,
             ->check(one_of(all_names(noise_names)))
             ->type_name("KIND");
     auto* const ours = app.add_option_group("Of the method", "not with a baseline, but for --keyframes of tokenflow");
-    float alpha = 0.7f;
     std::size_t keyframes = 0;
     auto* const keyframes_option =
         ours->add_option("--keyframes", keyframes, "m, drawn anew each step (4, or all frames if they are fewer)")
             ->check(positive)
             ->type_name("M");
-    ours->add_option("--alpha", alpha, "of post-attention injection (eq. 6), 0 to 1")
-        ->capture_default_str()
-        ->check(CLI::Range(0.0, 1.0).description(""))
-        ->type_name("A");
+    options.injection.add_to(app, *ours);
     bool no_pre = false;
     bool no_post = false;
     bool no_adain = false;
@@ -318,13 +316,13 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     try {
         app.parse(argc, argv);
         options.method = value_in(method_names, method);
-        if (!(alpha >= 0 && alpha <= 1)) { // Not-a-number passes a range.
-            throw CLI::ValidationError("--alpha", "is not a number, expected 0 to 1");
-        }
         auto const foreign = ours->count_all() -
                              (options.method == render_method::tokenflow ? keyframes_option->count() : std::size_t{0});
         if (options.method != render_method::generative_rendering && foreign > 0) {
             throw CLI::ValidationError("--method", method + " has no keyframes, injection or normalisation to set");
+        }
+        if (options.method == render_method::per_frame && options.injection.temperature) {
+            throw CLI::ValidationError("--temperature", "is of methods in which frames attend to others");
         }
         if (options.is_plan &&
             (options.method == render_method::pix2video || options.method == render_method::tokenflow)) {
@@ -345,7 +343,10 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         if (options.pipeline == "random" && of_pipeline->count_all() > 1) {
             throw CLI::ValidationError("--pipeline", "random has no files for the other options of the model");
         }
+        options.injection.start_from_preset(settings);
+        options.correspondence.default_to(settings, app);
         options.correspondence.apply_to(settings);
+        options.injection.apply_to(settings);
     } catch (CLI::ParseError const& error) {
         throw no_run{app.exit(error) == 0 ? 0 : 2};
     }
@@ -360,12 +361,12 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         options.keyframes = keyframes;
     }
     settings.sampler = value_in(sampler_names, sampler_name);
-    settings.alpha = [alpha](std::size_t, attention_site const&) { return alpha; };
     settings.injection.pre_attention = !no_pre;
     settings.injection.post_attention = !no_post;
     settings.normalization.enabled = !no_adain;
-    settings.normalization.statistics =
-        adain_deviations ? adain_statistics::mean_and_deviation : adain_statistics::mean;
+    if (adain_deviations) {
+        settings.normalization.statistics = adain_statistics::mean_and_deviation;
+    }
     settings.keyframe_storage = value_in(storage_names, storage);
     settings.noise.seed = options.seed;
     settings.keyframes.seed = options.seed;

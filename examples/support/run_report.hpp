@@ -103,14 +103,25 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
         told["noise_reading"] = matched.noise;
         told["background"] = matched.background;
     }
+    if (options.method != render_method::per_frame) {
+        told["temperature"] = settings.injection.length_correction;
+    }
     if (options.method == render_method::generative_rendering || options.method == render_method::tokenflow) {
         told["keyframes"] = settings.keyframes.count;
     }
     if (options.method == render_method::generative_rendering) {
         told["canonical"] = matched.canonical;
         told["correspondence"] = matched.correspondence;
-        told["average"] = settings.average == texel_average::plain ? "plain" : "quality";
-        told["alpha"] = settings.alpha(0, {});
+        auto const& injected = options.injection;
+        told["average"] = name_in(correspondence_options::average_names, settings.average);
+        told["quality_exponent"] = {settings.quality.exponent_begin, settings.quality.exponent_end};
+        told["quality_threshold"] = settings.quality.threshold;
+        told["preset"] = injected.preset.empty() ? "none" : injected.preset;
+        told["alpha"] = injected.alpha;
+        told["alpha_schedule"] = injected.schedule;
+        told["keyframe_drawing"] = injected.drawing;
+        told["counts_points"] = settings.injection.counts_points;
+        told["variance"] = name_in(injection_options::variance_names, settings.injection.variance.target);
         told["feature_storage"] = name_in(storage_names, settings.keyframe_storage);
         told["pre_attention"] = settings.injection.pre_attention;
         told["post_attention"] = settings.injection.post_attention;

@@ -73,7 +73,10 @@
 #include <genrender/attention/extended_attention.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/attention/host_features.hpp>
+#include <genrender/attention/kept_variance.hpp>
+#include <genrender/attention/key_counts.hpp>
 #include <genrender/attention/key_value_view.hpp>
+#include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/attention/projected_features.hpp>
 #include <genrender/attention/scaled_dot_product.hpp>
@@ -89,6 +92,7 @@
 #include <genrender/sampling/lent_latents.hpp>
 #include <genrender/sampling/noise_schedule.hpp>
 #include <genrender/sampling/preconditioning.hpp>
+#include <genrender/sampling/run_demands.hpp>
 #include <genrender/sampling/run_shapes.hpp>
 #include <genrender/sampling/sampler.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
@@ -103,12 +107,17 @@
 #include <genrender/blending/blend_plans.hpp>
 #include <genrender/blending/call_rows.hpp>
 #include <genrender/blending/mix_rows.hpp>
+#include <genrender/blending/mix_rows_keeping_variance.hpp>
 #include <genrender/blending/padded_rows.hpp>
+#include <genrender/blending/point_counts.hpp>
+#include <genrender/blending/quality_weights.hpp>
 #include <genrender/blending/row_bound.hpp>
 #include <genrender/blending/texel_weights.hpp>
 
+#include <genrender/injection/alpha_schedule.hpp>
 #include <genrender/injection/any_denoiser.hpp>
 #include <genrender/injection/feature_io.hpp>
+#include <genrender/injection/graph_abilities.hpp>
 #include <genrender/injection/graph_pass.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/injection/injection_settings.hpp>

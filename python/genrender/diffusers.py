@@ -5,6 +5,7 @@
 """
 
 import contextlib
+import math
 
 import torch
 import torch.nn.functional as nn
@@ -32,7 +33,8 @@ class SelfAttention:
     def record(self, heads, Q, K, V):
         """F of keyframes that attend to each other (eq. 3); keeps K_KF, V_KF, F_KF [branches, keyframes * tokens, ...]."""
         if self.run.pre_attention:
-            F = attend(heads, Q.flatten(1, 2), K.flatten(1, 2), V.flatten(1, 2)).view_as(Q)
+            F = attend(heads, Q.flatten(1, 2), K.flatten(1, 2), V.flatten(1, 2),
+                       temperature(K.shape[2], K.shape[1] * K.shape[2], self.run.length_correction)).view_as(Q)
         else:
             F = attend(heads, Q, K, V)
         self.kept = [x.flatten(1, 2) for x in (K, V, F)]
@@ -46,7 +48,7 @@ class SelfAttention:
         K_KF, V_KF, F_KF = self.kept
         if run.pre_attention:
             joined = [torch.cat([x, x_KF[:, None].expand(-1, x.shape[1], -1, -1)], 2) for x, x_KF in ((K, K_KF), (V, V_KF))]
-            F_hat = attend(heads, Q, *joined)
+            F_hat = attend(heads, Q, *joined, temperature(K.shape[2], joined[0].shape[2], run.length_correction))
         else:
             F_hat = attend(heads, Q, K, V)
         alpha = run.alpha(run.step, self.name) if callable(run.alpha) else run.alpha
@@ -55,10 +57,16 @@ class SelfAttention:
         return mix(F_hat, F_KF, run.blending.rows(Q.shape[2], run.keyframes, run.frames, alpha, Q.device))
 
 
-def attend(heads, Q, K, V):
-    """Attn(Q, K, V) (eq. 1) of [..., tokens, channels]; fused kernels take exactly four axes."""
+def temperature(own, keys, power):
+    """What logits are multiplied by where a token attends to `keys` keys, `own` of them its frame's: (ln keys / ln own)^power."""
+    return 1.0 if power == 0 or keys == own or own < 2 else (math.log(keys) / math.log(own)) ** power
+
+
+def attend(heads, Q, K, V, factor=1.0):
+    """Attn(Q, K, V) (eq. 1) of [..., tokens, channels], logits times `factor`; fused kernels take exactly four axes."""
     q, k, v = (x.flatten(0, -3).unflatten(-1, (heads, -1)).transpose(1, 2) for x in (Q, K, V))
-    return nn.scaled_dot_product_attention(q, k, v).transpose(1, 2).reshape(Q.shape)
+    scale = None if factor == 1.0 else factor / math.sqrt(q.shape[-1])
+    return nn.scaled_dot_product_attention(q, k, v, scale=scale).transpose(1, 2).reshape(Q.shape)
 
 
 class Run:
@@ -149,21 +157,24 @@ class Run:
 @torch.no_grad()
 def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, seed=0, keyframes=None, guidance_scale=7.5,
            conditioning_scale=1.0, clip_skip=None, sampler="euler", alpha=0.7, pre_attention=True, post_attention=True,
-           normalization="mean", average="quality", noise="uv", frames_per_call=1, observer=None):
+           normalization="mean", average="quality", noise="uv", frames_per_call=1, observer=None, length_correction=0.0):
     """Consistent clean latents of all frames [frames, channels, height / 8, width / 8], in float32 on the pipe's device.
 
     `maps` are genrender.Maps with depth. Of `keyframes` None is 4, or all frames if these are fewer; 0 renders every frame by
     itself, as the pipeline does. `alpha` is a number or a function of step and name of the module;
-    `normalization` is mean, mean_and_deviation or None. Raises ValueError for what does not fit.
+    `normalization` is mean, mean_and_deviation or None. `length_correction` is the power of ln(keys) / ln(own keys) on the
+    logits where frames attend to others: 1 is the length-corrected temperature. Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
     for name, value, least in (("keyframes", keyframes, 0), ("frames_per_call", frames_per_call, 1)):
         if value < least:
             raise ValueError(f"render: {name} is {value}, expected at least {least}")
+    if not (math.isfinite(length_correction) and length_correction >= 0):
+        raise ValueError(f"render: length_correction is {length_correction}, expected a finite number, 0 or more")
     run = Run(pipe, maps, prompt, negative_prompt, clip_skip, height, width, keyframe_count=keyframes, seed=seed,
               guidance_scale=guidance_scale, conditioning_scale=conditioning_scale, alpha=alpha, average=average,
               pre_attention=pre_attention, post_attention=post_attention, normalization=normalization,
-              frames_per_call=frames_per_call)
+              frames_per_call=frames_per_call, length_correction=length_correction)
     sigmas = karras_schedule(steps, run.schedule.sigma_min, run.schedule.sigma_max)
     channels = pipe.unet.config.in_channels
     z = sigmas[0] * torch.from_numpy(maps.initial_noise(channels, *run.grid, seed=seed, kind=noise)).to(run.device)

@@ -275,4 +275,56 @@ TEST_SUITE("adapters/torch") {
         CHECK(error_of([&] { both.call.mix(both.f, both.f, of_fewer, 0.5f); }) ==
               "torch_attention_call::mix: rows is [0], expected [80]");
     }
+    TEST_CASE("LibTorch scales logits as the library's call does, alike or a frame each") {
+        static_assert(scaling_attention_call<torch_attention_call>);
+        both_calls both;
+        std::vector<std::optional<std::size_t>> const without{std::nullopt, 0, 0, 2};
+        for (auto const& scales : {std::vector<double>(frames, 1.7), std::vector<double>{1, 1.5, 2, 2}}) {
+            auto const scaled = [&scales](auto sources) {
+                sources.set_scales(scales);
+                return sources;
+            };
+            CHECK(both.attend([&](auto const& K, auto const& V, auto const&) {
+                using features = std::remove_cvref_t<decltype(K)>;
+                return scaled(attention_sources<features>::own(K, V, frames));
+            }) < 4e-6f);
+            CHECK(both.attend([&](auto const& K, auto const& V, auto const&) {
+                using features = std::remove_cvref_t<decltype(K)>;
+                return scaled(attention_sources<features>::stack(K, V, frames));
+            }) < 4e-6f);
+            CHECK(both.attend([&](auto const& K, auto const& V, auto const& bank) {
+                using features = std::remove_cvref_t<decltype(K)>;
+                return scaled(attention_sources<features>::own_and_joined(K, V, bank, bank, keyframes, without));
+            }) < 4e-6f);
+        }
+        auto const own = both.call.project(both.f);
+        auto sources = attention_sources<at::Tensor>::stack(own.K, own.V, frames);
+        auto const unscaled = both.call.attend(own.Q, sources);
+        sources.set_scales(std::vector<double>(frames, 1.7));
+        CHECK_FALSE(at::allclose(both.call.attend(own.Q, sources), unscaled, 0, 1e-3));
+    }
+
+    TEST_CASE("LibTorch keeps variance as the library's call does") {
+        static_assert(variance_keeping_call<torch_attention_call>);
+        both_calls both;
+        std::array<some_plans, frames> const plans{some_plans{0}, some_plans{7}, some_plans{20}, some_plans{41}};
+        auto const rows = rows_of(plans);
+        auto const F_hat = features_of(frames, 8) + 5;
+        auto const F_KF = features_of(keyframes, 9) + 5;
+        for (auto const alpha : {0.7f, 1.0f, 0.0f}) {
+            for (auto const target : {variance_target::none, variance_target::total, variance_target::sources}) {
+                for (auto const most : {2.0, 1.05}) {
+                    kept_variance const kept{target, most};
+                    auto const F = both.call.mix_keeping_variance(F_hat, F_KF, rows, alpha, kept);
+                    CHECK(difference(F, both.host.mix_keeping_variance(host_of(F_hat), host_of(F_KF), rows, alpha,
+                                                                       kept)) < 2e-5f);
+                }
+            }
+        }
+        CHECK_FALSE(at::allclose(both.call.mix_keeping_variance(F_hat, F_KF, rows, 0.7f, {variance_target::total}),
+                                 both.call.mix(F_hat, F_KF, rows, 0.7f), 0, 1e-3));
+        // Tokens that no keyframe covers stay to the bit.
+        auto const kept = both.call.mix_keeping_variance(F_hat, F_KF, rows, 0.7f, {variance_target::total});
+        CHECK(at::equal(kept.select(1, 0), F_hat.select(1, 0)));
+    }
 }

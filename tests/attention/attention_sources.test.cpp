@@ -111,4 +111,26 @@ TEST_SUITE("attention/attention_sources") {
         CHECK(sources_type(3)[2].empty());
         CHECK(sources_type{}.empty());
     }
+    TEST_CASE("scales stay with their frames and leave the pattern, and ones are none") {
+        two_stacks const s;
+        auto sources = sources_type::stack(s.K, s.V, 2);
+        CHECK_FALSE(sources.is_scaled());
+        CHECK(sources.scale(1) == 1);
+        sources.set_scales({1, 1.5});
+        CHECK(sources.is_scaled());
+        CHECK(sources.scale(1) == 1.5);
+        CHECK(sources.pattern().meaning == attention_meaning::stack);
+        int const other = 0;
+        auto const of_others = sources.of_features<int>([&](stack_handle const&) { return &other; });
+        CHECK(of_others.scale(1) == 1.5);
+        sources.push_back({{&s.K, &s.V, 0}});
+        CHECK(sources.scale(1) == 1.5);
+        CHECK(sources.scale(2) == 1);
+        sources.set_scales({1, 1, 1});
+        CHECK_FALSE(sources.is_scaled());
+        CHECK(sources.scales().empty());
+        CHECK_THROWS_WITH_AS(sources.set_scales({1}), "attention_sources: scales is [1], expected [3]", shape_error);
+        CHECK_THROWS_WITH_AS(sources.set_scales({1, 0, 1}),
+                             "attention_sources: scales is 0.000000, expected finite and above 0", value_error);
+    }
 }

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 using namespace genrender;
@@ -512,5 +513,22 @@ TEST_SUITE("attention/scaled_dot_product") {
         counted[0].counts = {counts.data(), {2}};
         CHECK_THROWS_WITH_AS(scaled_dot_product(F.view(), Q, counted, 1),
                              "scaled_dot_product: counts is [2], expected [3]", shape_error);
+    }
+    TEST_CASE_TEMPLATE("a scale multiplies logits, and 1 changes no bit", Real, float, double) {
+        auto const Q = random_stack<Real, 2>({21, 16}, 1);
+        auto const K = random_stack<Real, 2>({37, 16}, 2);
+        auto const V = random_stack<Real, 2>({37, 16}, 3);
+        blocks_of<Real> const blocks{{K, V}};
+        auto sharper = Q;
+        std::for_each(sharper.data(), sharper.data() + sharper.size(), [](Real& q) { q *= Real(1.75); });
+        stack<Real, 2> F({21, 16});
+        scaled_dot_product(F.view(), Q, blocks, 2, {}, Real(1.75));
+        CHECK(largest_difference(F, naive<Real>(std::as_const(sharper).view(), blocks, 2)) < tolerance<Real>);
+        CHECK(largest_difference(F, attention(Q, blocks, 2)) > 1e-2);
+        scaled_dot_product(F.view(), Q, blocks, 2, {}, Real(1));
+        auto const unscaled = attention(Q, blocks, 2);
+        CHECK(std::equal(F.data(), F.data() + F.size(), unscaled.data()));
+        CHECK_THROWS_AS(scaled_dot_product(F.view(), Q, blocks, 2, {}, std::numeric_limits<Real>::infinity()),
+                        value_error);
     }
 }

@@ -12,6 +12,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <deque>
 #include <vector>
 
 using namespace genrender;
@@ -54,6 +57,30 @@ TEST_SUITE("baselines/pix2video") {
                 }
             }
         }
+    }
+    TEST_CASE("with the temperature it equals the plainly written method whose queries are sharper") {
+        small_baseline_run<double> run;
+        auto const z = run.noise();
+        run.settings.injection.length_correction = 1;
+        auto const x0 = run.estimate(pix2video{}, z, 3);
+        // Sharper where two frames are joined: frames 0 and 1 attend to one.
+        std::deque<matrix_module<double>> sharper;
+        for (std::size_t site = 0; site < run.phi.modules.size(); ++site) {
+            auto const own = run.phi.modules[site].grid.size();
+            auto& module = sharper.emplace_back(run.phi.channels, 2, 100 + 10 * site);
+            for (std::size_t e = 0; e < module.W_Q.size(); ++e) {
+                module.W_Q.data()[e] *= std::log(2.0 * static_cast<double>(own)) / std::log(static_cast<double>(own));
+            }
+        }
+        auto const expected = plain_evaluation<double>(
+            run.phi, to_view(z), 3, [&](attention_place place, host_features<double> const& f, std::size_t i) {
+                auto const& weights = i > 1 ? sharper[place.site.value] : run.phi.weights[place.site.value];
+                return dense_self_attention(weights, joined_rows(f, {i}), joined_rows(f, {0, i > 0 ? i - 1 : 0}));
+            });
+        for (std::size_t i = 0; i < run.frames; ++i) {
+            CHECK(frame_difference<double>(x0, expected.view(), i) < layered_tolerance<double>);
+        }
+        CHECK(frame_difference<double>(x0, plain_pix2video<double>(run.phi, to_view(z), 3).view(), 2) > 1e-3);
     }
     TEST_CASE("the first frame is denoised by itself and all others are not") {
         small_baseline_run<double> run;

@@ -183,4 +183,24 @@ TEST_SUITE("baselines/previous_frame_attention") {
                              "run its processor at every site in every call",
                              value_error);
     }
+    TEST_CASE("logits are scaled where a frame attends to two others, and there alone") {
+        matrix_module<double> const module(channels, 2, 11);
+        matrix_module<double> sharper(channels, 2, 11);
+        for (std::size_t e = 0; e < sharper.W_Q.size(); ++e) {
+            sharper.W_Q.data()[e] *= 2;
+        }
+        auto const f = random_features<double>({4, tokens, channels}, 12);
+        earlier_frames<host_features<double>> const earlier;
+        feature_bank<host_features<double>> kept(sites, 2);
+        previous_frame_attention<host_features<double>> const attend(
+            earlier, kept, everywhere, [](site_index, std::size_t joined) { return static_cast<double>(joined); });
+        auto const frames = frames_from(0, 4);
+        call_of<double> call(place, frames, f, module);
+        auto const F = attend(call);
+        for (std::size_t i = 0; i < 4; ++i) {
+            auto const joined = joined_rows(f, {0, i > 0 ? i - 1 : 0});
+            auto const& weights = i > 1 ? sharper : module;
+            CHECK(greatest_difference(F, i, dense_self_attention(weights, joined_rows(f, {i}), joined)) < 1e-12);
+        }
+    }
 }

@@ -191,6 +191,20 @@ TEST_SUITE("baselines/tokenflow") {
             }
         }
     }
+    TEST_CASE("with the temperature keyframes attend to each other as sharper queries do, and single ones as without") {
+        small_baseline_run<double> run;
+        auto const z = run.noise();
+        auto const difference = [&](double power) {
+            run.settings.injection.length_correction = power;
+            return run.estimate(tokenflow{}, z, 3);
+        };
+        auto const without = difference(0);
+        auto const with = difference(1);
+        CHECK(frame_difference<double>(with, to_view(without), 0) > 1e-3);
+        run.settings.keyframes.count = 1;
+        auto const alone = difference(0);
+        CHECK(frame_difference<double>(difference(1), to_view(alone), 0) == 0);
+    }
     TEST_CASE("a keyframe keeps the estimate of the keyframes' own pass") {
         small_baseline_run<double> run;
         auto const z = run.noise();

@@ -17,9 +17,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 using namespace genrender;
@@ -317,5 +319,82 @@ TEST_SUITE("blending/blend_plan") {
                              "make_blend_plan: keyframes is 2, expected a frame below 2", value_error);
         CHECK_THROWS_WITH_AS(make_blend_plan<double>(strip, KF, {0}, 1.5),
                              "make_blend_plan: first_fill_share is 1.500000, expected a share in [0, 1]", value_error);
+    }
+    TEST_CASE("an exponent of quality runs from all alike over shares of quality to the best alone") {
+        graded_strip const strip{{2, 3}};
+        std::vector<frame_index> const KF{{0}, {1}}; // of qualities 1 and 3
+        auto const shares = [&](double exponent) {
+            return weights_of(make_blend_plan<double>(strip, KF, {0}, 0, texel_average::by_quality, {exponent}))[1];
+        };
+        CHECK(shares(0) == std::vector<double>{0.5, 0.5});
+        CHECK(shares(2)[1] == doctest::Approx(0.9));
+        CHECK(shares(6)[1] == doctest::Approx(729.0 / 730));
+        CHECK(shares(1) == weights_of(make_blend_plan<double>(strip, KF, {0}, 0, texel_average::by_quality))[1]);
+    }
+    TEST_CASE("the winner has all of the average, whatever the order, and of those alike the earliest frame wins") {
+        graded_strip const strip{{2, 3}};
+        auto const plan_of = [&](std::vector<frame_index> const& KF, double share, bool is_known) {
+            graded_strip of = strip;
+            of.is_known = is_known;
+            return make_blend_plan<double>(of, KF, {0}, share, texel_average::winner);
+        };
+        using rows = std::vector<std::vector<double>>;
+        auto const drawn = plan_of({{0}, {1}}, 0, true);
+        CHECK(weights_of(drawn) == rows{{1}, {1}, {1}});
+        CHECK(drawn.sources == std::vector<std::uint32_t>{0, 3, 4}); // frame 1, which shows points 1, 2, 3
+        CHECK(plan_of({{1}, {0}}, 0, true).sources == std::vector<std::uint32_t>{3, 0, 1});
+        CHECK(weights_of(plan_of({{0}, {1}}, 0.5, true)) == rows{{1}, {0.5, 0.5}, {0.5, 0.5}});
+        CHECK(plan_of({{1}, {0}}, 0, false).sources == std::vector<std::uint32_t>{3, 4, 5}); // frame 0
+    }
+    TEST_CASE("a match below the threshold of the frame's own quality is none, and what has no other is not covered") {
+        graded_strip const strip{{2, 3}};
+        std::vector<frame_index> const KF{{0}, {1}};
+        auto const plan_of = [&](frame_index i, double threshold) {
+            return make_blend_plan<double>(strip, KF, i, 0, texel_average::by_quality, {1, threshold});
+        };
+        // Frame 1 sees with quality 3, in which frame 0 has a third of it.
+        CHECK(plan_of({1}, 0.3).sources.size() == 5);
+        CHECK(plan_of({1}, 0.4).sources == std::vector<std::uint32_t>{3, 4, 5});
+        CHECK(plan_of({0}, 2).sources == std::vector<std::uint32_t>{3, 4}); // of point 0 there is no better match
+        CHECK(plan_of({0}, 2).covered_count() == 2);
+        CHECK(plan_of({0}, 4).covered_count() == 0);
+        graded_strip const unknown{{2, 3}, false};
+        CHECK(make_blend_plan<double>(unknown, KF, {1}, 0, texel_average::plain, {1, 5}).sources.size() == 5);
+        CHECK(make_blend_plan<double>(strip, KF, {1}, 0, texel_average::plain, {1, 0.4}).sources ==
+              std::vector<std::uint32_t>{3, 4, 5});
+    }
+    TEST_CASE("matches of whole frames give weighed plans that single questions give") {
+        std::size_t entries = 0;
+        std::size_t fewer = 0;
+        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+            auto const maps = testing::random_scene(seed, 6, {48, 64}, 1 + seed % 4);
+            footprint_map const map(to_uv_view(maps), {12, 16});
+            one_by_one const single{&map};
+            auto const KF = draw_shuffled(seed);
+            for (std::uint32_t i = 0; i < 6; ++i) {
+                for (auto const& [average, weights] : {std::pair(texel_average::winner, quality_weights{}),
+                                                       {texel_average::by_quality, quality_weights{3, 0}},
+                                                       {texel_average::by_quality, quality_weights{1, 0.9}},
+                                                       {texel_average::plain, quality_weights{1, 0.9}},
+                                                       {texel_average::by_quality, quality_weights{0, 0.5}}}) {
+                    auto const share = seed == 0 ? 0.0 : 0.5;
+                    auto const expected = make_blend_plan<double>(single, KF, {i}, share, average, weights);
+                    auto const plan = make_blend_plan<double>(map, KF, {i}, share, average, weights);
+                    CHECK(plan.offsets == expected.offsets);
+                    CHECK(plan.sources == expected.sources);
+                    REQUIRE(plan.weights.size() == expected.weights.size());
+                    for (std::size_t e = 0; e < plan.weights.size(); ++e) {
+                        CHECK(plan.weights[e] == doctest::Approx(expected.weights[e]).epsilon(1e-6));
+                    }
+                    for (auto const& row : weights_of(plan)) {
+                        CHECK(std::accumulate(row.begin(), row.end(), 0.0) == doctest::Approx(row.empty() ? 0.0 : 1.0));
+                    }
+                    entries += plan.sources.size();
+                    fewer += make_blend_plan<double>(map, KF, {i}).covered_count() - plan.covered_count();
+                }
+            }
+        }
+        CHECK(entries > 4000);
+        CHECK(fewer > 30);
     }
 }

@@ -20,6 +20,7 @@ TEST_SUITE("c/engine_call") {
         int values[8] = {0, 1, 2, 3, 4, 5, 6, 7};
         int released = 0;
         std::size_t blocks_seen = 0;
+        float scale_seen = 0; ///< of the second frame
         genrender_engine table{};
         number_engine() {
             table.context = this;
@@ -35,6 +36,7 @@ TEST_SUITE("c/engine_call") {
                               genrender_sources sources) -> genrender_features* {
                 auto& engine = *static_cast<number_engine*>(context);
                 engine.blocks_seen = sources.offsets[sources.frames];
+                engine.scale_seen = sources.scales != nullptr ? sources.scales[1] : 0;
                 auto const& last = sources.blocks[sources.offsets[1]];
                 return &engine.values[*static_cast<int const*>(last.K) + static_cast<int>(last.frame)];
             };
@@ -77,5 +79,23 @@ TEST_SUITE("c/engine_call") {
         auto const F = call.attend(call.f(), sources);
         CHECK(engine.blocks_seen == 3);
         CHECK(*static_cast<int*>(F.get()) == 4); // K of frame 1's first block is 3, its frame 1
+    }
+    TEST_CASE("scales of logits reach an engine that says it scales, and are refused by another") {
+        number_engine engine;
+        std::array<std::uint32_t, 2> const frames{5, 9};
+        genrender_call const plain{{3, 1}, frames.data(), 2, &engine.values[1], nullptr};
+        engine_call const call(engine.table, plain);
+        engine_features const K(&engine.values[2]);
+        attention_sources<engine_features> sources{{{&K, &K, 0}}, {{&K, &K, 1}}};
+        call.attend(call.f(), sources);
+        CHECK(engine.scale_seen == 0); // null
+        sources.set_scales({1, 1.5});
+        CHECK_THROWS_WITH_AS(call.attend(call.f(), sources),
+                             "engine_call: logits are scaled, expected a length_correction of 0 for an engine without "
+                             "scales_logits",
+                             value_error);
+        engine.table.scales_logits = 1;
+        call.attend(call.f(), sources);
+        CHECK(engine.scale_seen == 1.5F);
     }
 }

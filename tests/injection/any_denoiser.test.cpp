@@ -95,12 +95,22 @@ TEST_SUITE("injection/any_denoiser") {
         auto in_16_bits = three_steps();
         in_16_bits.keyframe_storage = feature_storage::bf16;
         CHECK(renders_the_same(phi, in_16_bits));
+        auto vivid = three_steps();
+        vivid.injection.length_correction = 1;
+        vivid.injection.variance.target = variance_target::total;
+        CHECK(renders_the_same(phi, vivid));
     }
     TEST_CASE("it renders the frames of a static graph, to the bit") {
         CHECK(renders_the_same(static_denoiser{}, three_steps()));
         auto without = three_steps();
         without.injection.post_attention = false;
         CHECK(renders_the_same(static_denoiser{}, without));
+        auto scaled = three_steps();
+        scaled.injection.length_correction = 1;
+        CHECK_THROWS_WITH_AS(renders_the_same(static_denoiser{}, scaled),
+                             "inputs_at: logits are scaled, expected a length_correction of 0 for an engine whose "
+                             "graph_abilities do not say scales_logits",
+                             value_error);
     }
     TEST_CASE("it tells the denoiser the shapes of a run") {
         struct prepared : analytic {

@@ -327,4 +327,67 @@ TEST_SUITE("injection/feature_io") {
         CHECK_THROWS_WITH_AS((inputs_at<host_features<double>, double>(pass, place, frames)),
                              "injector: f_KF is missing, expected keyframes recorded by record_features", value_error);
     }
+    TEST_CASE("scales of logits are the same both ways, and refused by an engine that does not say it scales") {
+        matrix_module<double> const module(channels, 3, 1);
+        auto const f_KF = random_features<double>({KF.size(), tokens, channels}, 2);
+        auto const by_count = [](site_index, std::size_t joined) { return static_cast<double>(joined); };
+        feature_bank<host_features<double>> bank(1, 2);
+        recorder<host_features<double>> const record(bank, always, true, feature_storage::same, by_count);
+        using features = host_features<double>;
+        auto const scaled = inputs_at<features, double>(record, place, KF, graph_abilities{.scales_logits = true});
+        CHECK(scaled.scales == std::vector<double>(3, 3.0));
+        CHECK_THROWS_WITH_AS((inputs_at<features, double>(record, place, KF)),
+                             "inputs_at: logits are scaled, expected a length_correction of 0 for an engine whose "
+                             "graph_abilities do not say scales_logits",
+                             value_error);
+        record_features(record, place, f_KF, f_KF);
+        injection_settings settings;
+        settings.keeps_own_copy = false;
+        random_plan<double> const plan(tokens, KF.size(), 4);
+        auto const plans = plans_of<double>(1, frames, [&](site_index, frame_index) { return plan.rows(); });
+        auto const alpha = [](site_index) { return 0.7; };
+        injector<features, double> const inject(bank, KF, plans, settings, alpha, by_count);
+        auto const in = inputs_for<features, double>(inject, place, frames, {.scales_logits = true});
+        CHECK(in.scales == std::vector<double>{4, 3}); // the second frame is a keyframe
+        CHECK_THROWS_AS((inputs_at<features, double>(inject, place, frames)), value_error);
+        CHECK(demanding_feature_io_processor<injector<features, double>, features, double>);
+        CHECK_FALSE(demanding_feature_io_processor<foreign::no_features, foreign::handle, float>);
+        CHECK(inputs_for<foreign::handle, float>(foreign::no_features{}, place, frames, {}).scales.empty());
+    }
+
+    TEST_CASE("variance to be kept is told to an engine that keeps it, and refused by one that does not say so") {
+        using features = host_features<double>;
+        auto const f_KF = random_features<double>({KF.size(), tokens, channels}, 2);
+        feature_bank<features> bank(1, 2);
+        record_features(recorder<features>(bank, always), place, f_KF, f_KF);
+        random_plan<double> const plan(tokens, KF.size(), 4);
+        auto const plans = plans_of<double>(1, frames, [&](site_index, frame_index) { return plan.rows(); });
+        injection_settings settings;
+        settings.variance = {variance_target::sources, 1.5};
+        injector<features, double> const inject(bank, KF, plans, settings);
+        auto const in = inputs_at<features, double>(inject, place, frames, graph_abilities{.keeps_variance = true});
+        CHECK(in.variance.target == variance_target::sources);
+        CHECK(in.variance.most_gain == 1.5);
+        CHECK_THROWS_WITH_AS((inputs_at<features, double>(inject, place, frames)),
+                             "inputs_at: variance is to be kept, expected variance_target::none for an engine whose "
+                             "graph_abilities do not say keeps_variance",
+                             value_error);
+        settings.post_attention = false; // Nothing is mixed.
+        injector<features, double> const unmixed(bank, KF, plans, settings);
+        CHECK_NOTHROW((inputs_at<features, double>(unmixed, place, frames)));
+    }
+    TEST_CASE("counts of keys are refused by a static graph") {
+        using features = host_features<double>;
+        feature_bank<features> bank(1, 2);
+        auto const f_KF = random_features<double>({KF.size(), tokens, channels}, 2);
+        auto const counts = [](site_index, frame_index) { return std::vector<float>(KF.size() * tokens, 0.5F); };
+        recorder<features> const record(bank, always, true, feature_storage::same, {}, counts);
+        auto const text = "inputs_at: keys are counted, expected counts_points to be false for a static graph";
+        CHECK_THROWS_WITH_AS((inputs_at<features, double>(record, place, KF)), text, value_error);
+        record_features(record, place, f_KF, f_KF);
+        injection_settings settings;
+        settings.counts_points = true;
+        injector<features, double> const inject(bank, KF, {}, settings);
+        CHECK_THROWS_WITH_AS((inputs_at<features, double>(inject, place, frames)), text, value_error);
+    }
 }

@@ -298,4 +298,91 @@ TEST_SUITE("injection/injector") {
         auto call = world.call({{0}, 0});
         CHECK(equal_bits(pass(call), plain_attention{}(call)));
     }
+    TEST_CASE("logits are scaled by the number of frames that are joined, a frame each") {
+        recorded_world<double> world;
+        injection_settings settings;
+        settings.keeps_own_copy = false;
+        auto const by_count = [](site_index site, std::size_t joined) {
+            CHECK(site == site_index{1});
+            return 1 + 0.5 * static_cast<double>(joined);
+        };
+        auto const with_scales = [&](injection_settings of) {
+            return injector<host_features<double>, double>(
+                world.bank, KF, world.planned(), of, [](site_index) { return 0.7; }, by_count);
+        };
+        auto call = world.call(taken);
+        auto const F = with_scales(settings)(call);
+        CHECK(with_scales(settings).scales(taken, frames) == std::vector<double>{3, 2.5, 3, 2.5});
+        CHECK(with_scales(settings).scales({{0}, 0}, frames).empty());
+        std::vector<std::vector<std::size_t>> const joined{{0, 1, 2}, {0, 1}, {0, 1, 2}, {1, 2}};
+        auto const plain_queries = world.module.W_Q;
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            for (std::size_t e = 0; e < plain_queries.size(); ++e) {
+                world.module.W_Q.data()[e] = plain_queries.data()[e] * by_count({1}, 1 + joined[i].size());
+            }
+            CHECK(greatest_difference(F, i, world.expected(i, joined[i], 0.7)) < 1e-12);
+        }
+        world.module.W_Q = plain_queries;
+        CHECK(greatest_difference(F, 0, world.expected(0, joined[0], 0.7)) > 1e-3);
+        settings.pre_attention = false; // A frame alone is as the network has it.
+        injector<host_features<double>, double> const never_joined(
+            world.bank, KF, world.planned(), settings, [](site_index) { return 0.7; },
+            [](site_index, std::size_t count) { return static_cast<double>(count); });
+        CHECK(equal_bits(never_joined(call), world.inject(settings)(call)));
+        CHECK(never_joined.scales(taken, frames).empty());
+    }
+
+    TEST_CASE("[GR eq. 6] the variance that settings tell is kept") {
+        recorded_world<double> const world;
+        auto call = world.call(taken);
+        injection_settings settings;
+        settings.post_attention = false;
+        auto const F_hat = world.inject(settings)(call);
+        settings.post_attention = true;
+        settings.variance.target = variance_target::total;
+        auto const F = world.inject(settings)(call);
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            mix_rows_keeping_variance(F_hat.view()[i], in_view<double, 3>(world.F_KF.view()),
+                                      world.plan({1}, frames[i]).rows(), 0.7, settings.variance);
+        }
+        CHECK(equal_bits(F, F_hat));
+        CHECK_FALSE(equal_bits(F, world.inject()(call)));
+    }
+    TEST_CASE("keys of one surface point count together for one where settings say so") {
+        recorded_world<double> const world;
+        injection_settings settings;
+        settings.post_attention = false;
+        auto const uncounted = world.inject(settings);
+        settings.counts_points = true;
+        auto const counted = world.inject(settings);
+        auto call = world.call(taken);
+        auto const F = counted(call);
+        auto const K = call.key(call.f());
+        auto const V = call.value(call.f());
+        auto const& kept = *world.bank.find(taken);
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            auto const counts = point_counts(world.plan({1}, frames[i]).rows(), KF.size());
+            std::vector<double> const numbers(counts.begin(), counts.end());
+            std::vector<key_value_view<double>> blocks;
+            auto const add = [&](auto const& keys, auto const& values, std::size_t frame) {
+                blocks.push_back({keys.view()[frame], values.view()[frame],
+                                  strided_view<double const, 1>(numbers.data() + blocks.size() * tokens, {tokens})});
+            };
+            add(K, V, i);
+            for (std::size_t k = 0; k < KF.size(); ++k) {
+                add(*kept.K_KF, *kept.V_KF, k);
+            }
+            stack<double, 2> expected({tokens, channels});
+            scaled_dot_product(expected.view(), call.query(call.f()).view()[i], blocks, 2);
+            for (std::size_t t = 0; t < tokens; ++t) {
+                for (std::size_t c = 0; c < channels; ++c) {
+                    CHECK(F.view()(i, t, c) == doctest::Approx(expected(t, c)).epsilon(1e-12));
+                }
+            }
+        }
+        CHECK(counted.counts_keys(taken));
+        CHECK_FALSE(counted.counts_keys({{0}, 0}));
+        CHECK_FALSE(uncounted.counts_keys(taken));
+        CHECK_FALSE(equal_bits(F, uncounted(call)));
+    }
 }

@@ -204,4 +204,13 @@ TEST_SUITE("keyframes/draw_keyframes") {
         CHECK_THROWS_WITH_AS(draw_keyframes(fixed({{1}, {3}, {1}}), 4, 0),
                              "draw_keyframes: frames is 1, expected different frames below 4", value_error);
     }
+    TEST_CASE("held keyframes are those of a uniform draw's first step in every step") {
+        auto held = uniform(3, 8);
+        held.drawing = keyframe_drawing::held;
+        for (std::size_t step = 0; step < 5; ++step) {
+            CHECK(drawn(held, 10, step) == drawn(uniform(3, 8), 10, 0));
+        }
+        CHECK_FALSE(drawn(uniform(3, 8), 10, 1) == drawn(held, 10, 1));
+        CHECK_THROWS_AS(draw_keyframes(held, 2, 0), value_error);
+    }
 }

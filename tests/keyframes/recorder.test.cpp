@@ -283,4 +283,55 @@ TEST_SUITE("keyframes/recorder") {
         CHECK(is_plain_at(pass, {{0}, 0}));
         CHECK_FALSE(is_plain_at(pass, {{1}, 0}));
     }
+    TEST_CASE("logits are scaled by the number of keyframes where they attend to each other, and there alone") {
+        module_type const module(channels, 2, 1);
+        module_type sharper(channels, 2, 1);
+        for (std::size_t e = 0; e < sharper.W_Q.size(); ++e) {
+            sharper.W_Q.data()[e] *= 3;
+        }
+        feature_bank<features> bank(2, 1);
+        auto const by_count = [](site_index site, std::size_t joined) {
+            CHECK(site == site_index{1});
+            return static_cast<double>(joined);
+        };
+        call_type call({{1}, 0}, drawn, input(3), module);
+        call_type expected({{1}, 0}, drawn, input(3), sharper);
+        recorder<features> const pass(bank, always, true, feature_storage::same, by_count);
+        auto const F = pass(call);
+        auto const F_expected = extended(expected);
+        for (std::size_t e = 0; e < F.view().size(); ++e) {
+            CHECK(F.view().data()[e] == doctest::Approx(F_expected.view().data()[e]).epsilon(1e-12));
+        }
+        CHECK(pass.scales({{1}, 0}, keyframes) == std::vector<double>(keyframes, 3.0));
+        CHECK(pass.scales({{1}, 0}, 1).empty());
+        recorder<features> const alone(bank, always, false, feature_storage::same, by_count);
+        CHECK(equal_bits(alone(call), plain_attention{}(call)));
+        CHECK(alone.scales({{1}, 0}, keyframes).empty());
+        CHECK(recorder<features>(bank, always).scales({{1}, 0}, keyframes).empty());
+        recorder<features> const elsewhere(bank, never, true, feature_storage::same, by_count);
+        CHECK(equal_bits(elsewhere(call), plain_attention{}(call)));
+    }
+    TEST_CASE("keys count as they are told where keyframes attend to each other, and there alone") {
+        module_type const module(channels, 2, 1);
+        feature_bank<features> bank(2, 1);
+        call_type call({{1}, 0}, drawn, input(3), module);
+        auto const halves = [](site_index, frame_index) { return std::vector<float>(keyframes * tokens, 0.5F); };
+        auto const by_frame = [](site_index, frame_index) {
+            std::vector<float> counts(keyframes * tokens, 1.0F);
+            std::fill_n(counts.begin(), tokens, 0.25F);
+            return counts;
+        };
+        recorder<features> const alike(bank, always, true, feature_storage::same, {}, halves);
+        recorder<features> const pass(bank, always, true, feature_storage::same, {}, by_frame);
+        auto const F = alike(call);
+        auto const plain = extended(call);
+        for (std::size_t e = 0; e < F.view().size(); ++e) {
+            CHECK(F.view().data()[e] == doctest::Approx(plain.view().data()[e]).epsilon(1e-12));
+        }
+        CHECK_FALSE(equal_bits(pass(call), plain));
+        CHECK(pass.counts_keys({{1}, 0}));
+        recorder<features> const alone(bank, always, false, feature_storage::same, {}, by_frame);
+        CHECK(equal_bits(alone(call), plain_attention{}(call)));
+        CHECK_FALSE(alone.counts_keys({{1}, 0}));
+    }
 }

@@ -113,6 +113,18 @@ TEST_SUITE("pipeline/memory_plan") {
         settings.correspondence.kind = correspondence_kind::texel_grid;
         CHECK(plan_memory(run, settings).bytes.matching == 0);
     }
+    TEST_CASE("counts of points take plans of keyframes, and plans without eq. 6") {
+        auto settings = two_steps();
+        auto const run = described_run();
+        auto const plain = plan_memory(run, settings).bytes;
+        settings.injection.counts_points = true;
+        auto const counted = plan_memory(run, settings).bytes;
+        CHECK(counted.blend_plans == 4 * plain.blend_plans); // of 3 keyframes beside those of a call of 1 frame
+        settings.injection.post_attention = false;
+        CHECK(plan_memory(run, settings).bytes.blend_plans == counted.blend_plans);
+        settings.injection.counts_points = false;
+        CHECK(plan_memory(run, settings).bytes.blend_plans == 0);
+    }
     TEST_CASE("[GR eq. 3, 5] FLOPs of attention are counted by hand") {
         auto settings = two_steps();
         auto const run = described_run();

@@ -129,6 +129,19 @@ TEST_SUITE("pipeline/render") {
                              s.noise.T = 2;
                          })) > 1e-3);
         CHECK(difference(full, changed([](auto& s) { s.keyframes.drawing = keyframe_drawing::stratified; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.keyframes.drawing = keyframe_drawing::held; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.injection.length_correction = 1; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.injection.variance.target = variance_target::total; })) > 1e-9);
+        auto const counted = changed([](auto& s) { s.injection.counts_points = true; });
+        CHECK(difference(full, counted) > 1e-9);
+        CHECK(difference(no_post, changed([](auto& s) { // makes plans all the same
+                             s.injection.post_attention = false;
+                             s.injection.counts_points = true;
+                         })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.average = texel_average::winner; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.quality.exponent_end = 6; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.quality.exponent_begin = 0; })) > 1e-9);
+        CHECK(difference(full, changed([](auto& s) { s.quality.threshold = 1; })) > 1e-9);
     }
     TEST_CASE("[GR sec. 4: Ablation studies] each ablation is one setting away from the full method") {
         auto const phi = with_attention();
@@ -337,6 +350,14 @@ TEST_SUITE("pipeline/render") {
                 "render: window of settings.normalization is [0.000000, 7.000000), expected 0 <= begin <= end <= 1");
         refuses([](auto& s) { s.first_fill_share = -1; },
                 "render: settings.first_fill_share is -1.000000, expected a share in [0, 1]");
+        refuses([](auto& s) { s.injection.length_correction = -1; },
+                "render: settings.injection.length_correction is -1.000000, expected a finite number, 0 or more");
+        refuses([](auto& s) { s.injection.variance.most_gain = 0; },
+                "render: most_gain is 0.000000, expected a finite number, 1 or more");
+        refuses([](auto& s) { s.quality.exponent_end = std::nan(""); },
+                "render: quality.exponent_end is nan, expected a finite number, 0 or more");
+        refuses([](auto& s) { s.quality.threshold = -1; },
+                "render: quality.threshold is -1.000000, expected a finite number, 0 or more");
         refuses([](auto& s) { s.layers = nullptr; }, "render: settings.layers is empty, expected a function");
         refuses([](auto& s) { s.alpha = nullptr; }, "render: settings.alpha is empty, expected a function");
         refuses([](auto& s) { s.alpha = [](std::size_t, attention_site const&) { return std::nan(""); }; },

@@ -40,4 +40,29 @@ TEST_SUITE("pipeline/render_settings") {
         site.part = network_part::middle;
         CHECK(!is_in_decoder(site, 0));
     }
+    TEST_CASE("the paper's settings are its text, and the defaults differ from it where the readings say") {
+        auto const paper = render_settings<float>::paper();
+        CHECK(paper.correspondence.kind == correspondence_kind::texel_grid);
+        CHECK(!paper.correspondence.texels.T); // matched
+        CHECK(paper.average == texel_average::plain);
+        CHECK(paper.noise.kind == noise_kind::uv);
+        CHECK(paper.noise.reading == noise_reading::nearest_texel);
+        CHECK(!paper.noise.T);
+        CHECK(paper.normalization.enabled);
+        CHECK(paper.normalization.statistics == adain_statistics::mean_and_deviation);
+        CHECK(paper.alpha(7, {}) == 0.7F);
+        CHECK(paper.first_fill_share == 0.5F);
+        CHECK(paper.injection.length_correction == 0);
+        CHECK(paper.injection.variance.target == variance_target::none);
+        CHECK(paper.quality.at(3, 10).are_plain());
+        CHECK(paper.sampler == sampler_kind::euler);
+    }
+    TEST_CASE("vivid settings keep eq. 6, the temperature and the variance of sources") {
+        auto const vivid = render_settings<double>::vivid();
+        CHECK(vivid.injection.post_attention);
+        CHECK(vivid.injection.length_correction == 1);
+        CHECK(vivid.injection.variance.target == variance_target::sources);
+        CHECK(vivid.normalization.statistics == adain_statistics::mean);
+        CHECK(vivid.correspondence.kind == correspondence_kind::footprint);
+    }
 }

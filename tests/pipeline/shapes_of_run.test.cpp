@@ -198,6 +198,21 @@ TEST_SUITE("pipeline/shapes_of_run") {
         CHECK(masked.told->calls_at_once == 2);
 
         settings = few_steps();
+        settings.injection.length_correction = 1;
+        settings.injection.variance.target = variance_target::total;
+        seen_shapes vivid;
+        run(vivid, settings);
+        CHECK(vivid.told->scales_logits);
+        CHECK(vivid.told->keeps_variance);
+        CHECK(!masked.told->scales_logits);
+        CHECK(!masked.told->keeps_variance);
+        seen_shapes unjoined;
+        settings.injection.pre_attention = settings.injection.post_attention = false;
+        run(unjoined, settings);
+        CHECK(!unjoined.told->scales_logits);
+        CHECK(!unjoined.told->keeps_variance);
+
+        settings = few_steps();
         settings.injection.pre_attention = false;
         seen_shapes alone;
         run(alone, settings);
@@ -248,6 +263,19 @@ TEST_SUITE("pipeline/shapes_of_run") {
         CHECK(!video.told->mixes_rows);
         CHECK(!video.told->has_plain_steps);
         CHECK(video.told->banks == 2);
+        CHECK(!video.told->scales_logits);
+
+        auto scaled = few_steps();
+        scaled.injection.length_correction = 1;
+        scaled.injection.variance.target = variance_target::total;
+        seen_shapes scaled_flow;
+        run<tokenflow>(scaled_flow, scaled);
+        CHECK(scaled_flow.told->scales_logits);
+        CHECK(!scaled_flow.told->keeps_variance); // it is not read
+        seen_shapes scaled_video;
+        run<pix2video>(scaled_video, scaled);
+        CHECK(scaled_video.told->scales_logits);
+        CHECK(!scaled_video.told->keeps_variance);
     }
     TEST_CASE("a method that does not tell may ask for everything") {
         correspondence_set<chosen_correspondence<2>> const maps;

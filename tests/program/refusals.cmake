@@ -57,6 +57,29 @@ refuses("more keyframes than frames" 2 "count is 9, expected 1 to the animation'
 refuses("a size that the network cannot halve" 2 "--size: height is 60, expected a multiple of 16" ${scene} --prompt dots ${out} --size 60)
 refuses("an alpha above 1" 2 "--alpha" ${scene} --prompt dots ${out} --alpha 1.5)
 refuses("an alpha that is no number" 2 "--alpha" ${scene} --prompt dots ${out} --alpha nan)
+refuses("an unknown preset" 2 "--preset" ${scene} --prompt dots ${out} --preset loud)
+refuses("a temperature that is no number" 2 "--temperature" ${scene} --prompt dots ${out} --temperature warm)
+refuses("a temperature below 0" 2 "--temperature: is not a number of 0 to 100" ${scene} --prompt dots ${out} --temperature -1)
+refuses("a temperature of nan" 2 "--temperature: is not a number of 0 to 100" ${scene} --prompt dots ${out} --temperature nan)
+refuses("a temperature of frames that attend to nobody else" 2 "--temperature: is of methods" ${scene} --prompt dots ${out}
+    --method per_frame --temperature 1)
+refuses("a variance that is none" 2 "--variance" ${scene} --prompt dots ${out} --variance most)
+refuses("a schedule that is none" 2 "--alpha-schedule" ${scene} --prompt dots ${out} --alpha-schedule sometimes)
+refuses("an exponent that is no number" 2 "--quality-exponent: is '0:high', expected a number or two" ${scene} --prompt dots
+    ${out} --quality-exponent 0:high)
+refuses("an exponent below 0" 2 "--quality-exponent: is not a number of 0 to 100" ${scene} --prompt dots ${out}
+    --quality-exponent=-1)
+refuses("an exponent of a plain average" 2 "--quality-exponent: is of --average quality" ${scene} --prompt dots ${out}
+    --average plain --quality-exponent 2)
+refuses("a threshold below 0" 2 "--quality-threshold: is not a number of 0 to 100" ${scene} --prompt dots ${out}
+    --quality-threshold=-0.5)
+refuses("a threshold of texels" 2 "--quality-threshold: is of --correspondence footprint" ${scene} --prompt dots ${out}
+    --preset paper --quality-threshold 0.5)
+refuses("texels of the paper's preset and rest positions" 2 "--canonical: position has no texels" ${scene} --prompt dots ${out}
+    --preset paper --canonical position)
+refuses("a preset of a baseline" 2 "tokenflow has no keyframes, injection" ${scene} --prompt dots ${out} --method tokenflow
+    --preset vivid)
+refuses("keyframes that are drawn like nothing" 2 "--keyframe-drawing" ${scene} --prompt dots ${out} --keyframe-drawing dice)
 refuses("vectors that no processor has" 2 "--vectors" ${scene} --prompt dots ${out} --vectors v9)
 refuses("a negative seed" 2 "--seed" ${scene} --prompt dots ${out} --seed -1)
 refuses("maps that no machine can hold" 2 "half of the machine's memory" ${scene} --prompt dots ${out} --size 1048576)

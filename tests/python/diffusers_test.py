@@ -52,6 +52,7 @@ RUNS = {
     "negative prompt, half a ControlNet": (
         ["--negative-prompt", "grey", "--conditioning", "0.5"], {"negative_prompt": "grey", "conditioning_scale": 0.5}),
     "clip skip": (["--clip-skip", "1"], {"clip_skip": 1}),
+    "length-corrected temperature to the power of 4": (["--temperature", "4"], {"length_correction": 4}),
 }
 
 
@@ -189,6 +190,7 @@ class PipelineTest(unittest.TestCase):
                                    ({"keyframes": 9}, "count is 9, expected 1 to the animation's 5 frames"),
                                    ({"keyframes": -1}, "keyframes is -1, expected at least 0"),
                                    ({"frames_per_call": 0}, "frames_per_call is 0, expected at least 1"),
+                                   ({"length_correction": -1}, "length_correction is -1, expected a finite number, 0 or more"),
                                    ({"sampler": "ddim"}, "sampler is ddim"),
                                    ({"normalization": "median"}, "statistics is median")):
             with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):

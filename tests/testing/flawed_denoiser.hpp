@@ -5,8 +5,10 @@
 #include "second_denoiser.hpp"
 
 #include <genrender/attention/feature_storage.hpp>
+#include <genrender/attention/kept_variance.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/attention/projected_features.hpp>
+#include <genrender/blending/mix_rows_keeping_variance.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 
@@ -56,13 +58,19 @@ enum class flaw {
     joins_what_is_left_out,
     projects_keys_twice,
     stores_zeros,
-    stores_what_is_infinite
+    stores_what_is_infinite,
+    ignores_scales,
+    scales_by_pattern_alone,
+    keeps_variance_unasked,
+    keeps_variance_without_bound,
+    rescales_uncovered_rows
 };
 
 /// A call of the second engine with a flaw.
 struct flawed_call {
     using features_type = second_engine::tensor;
     using real_type = float;
+    static constexpr bool scales_logits = true;
 
     second_engine::attention_run const* run;
     flaw what;
@@ -94,7 +102,23 @@ struct flawed_call {
         return {query(f), key(f), what == flaw::projects_keys_twice ? key(f) : value(f)};
     }
 
-    features_type attend(features_type const& Q, attention_sources<features_type> const& sources) const {
+    /// The second engine knows no scales: queries take them.
+    features_type scaled(features_type const& Q, attention_sources<features_type> const& sources) const {
+        if (!sources.is_scaled() || what == flaw::ignores_scales ||
+            (what == flaw::scales_by_pattern_alone && sources.pattern().meaning == attention_meaning::listed)) {
+            return Q;
+        }
+        auto out = Q.clone();
+        for (std::size_t i = 0; i < Q.frames; ++i) {
+            for (std::size_t e = 0; e < Q.tokens * Q.channels; ++e) {
+                out.row(i, 0)[e] *= static_cast<float>(sources.scale(i));
+            }
+        }
+        return out;
+    }
+
+    features_type attend(features_type const& unscaled, attention_sources<features_type> const& sources) const {
+        auto const Q = scaled(unscaled, sources);
         auto changed = sources;
         if (auto const& all = sources.pattern();
             what == flaw::joins_what_is_left_out && all.meaning == attention_meaning::own_and_joined) {
@@ -153,6 +177,28 @@ struct flawed_call {
                         x += (alpha - alpha * alpha) * F_hat.row(i, t)[c];
                     }
                 }
+            }
+        }
+        return F;
+    }
+
+    features_type mix_keeping_variance(features_type const& F_hat, features_type const& F_KF,
+                                       std::span<sparse_rows<float> const> rows, float alpha,
+                                       kept_variance const& kept) const {
+        auto told = kept;
+        if (what == flaw::keeps_variance_unasked && told.target == variance_target::none) {
+            told.target = variance_target::total;
+        }
+        told.most_gain = what == flaw::keeps_variance_without_bound ? 1e6 : told.most_gain;
+        auto F = what == flaw::keeps_variance_unasked || kept.target != variance_target::none
+                     ? F_hat.clone()
+                     : mix(F_hat, F_KF, rows, alpha);
+        for (std::size_t i = 0; i < F.frames && told.target != variance_target::none; ++i) {
+            strided_view<float, 2> const out(F.row(i, 0), {F.tokens, F.channels});
+            strided_view<float const, 3> const bank(F_KF.elements->data(), {F_KF.frames, F_KF.tokens, F_KF.channels});
+            mix_rows_keeping_variance(out, bank, rows[i], alpha, told);
+            if (what == flaw::rescales_uncovered_rows && rows[i].sources.empty()) {
+                *out.data() *= 2;
             }
         }
         return F;

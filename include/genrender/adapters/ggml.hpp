@@ -129,6 +129,7 @@ public:
         : backend_(backend), shapes_(std::move(shapes)), sites_(sites.begin(), sites.end()) {
         constexpr auto here = "ggml_feature_io";
         require_value(!shapes_.lists_sources, here, "shapes.lists_sources", "true", "a method that lists no sources");
+        require_abilities(here, {}, shapes_);
         require_value(shapes_.banks == 1, here, "shapes.banks", shapes_.banks, "one bank at a time");
         for (auto const place : shapes_.places) {
             require_value(place.site.value < sites_.size(), here, "shapes.places", place.site.value, "a site");

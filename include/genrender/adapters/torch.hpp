@@ -7,6 +7,8 @@
 #include <genrender/adapters/torch_plans.hpp>
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/attention/feature_storage.hpp>
+#include <genrender/attention/kept_variance.hpp>
+#include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/projected_features.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/core/sparse_rows.hpp>
@@ -18,7 +20,9 @@
 #include <ATen/ops/linear.h>
 #include <ATen/ops/scaled_dot_product_attention.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -62,6 +66,8 @@ public:
     using real_type = float;          ///< type of the weights of mix
     using features_type = at::Tensor; ///< features on their device
 
+    static constexpr bool scales_logits = true; ///< scaling_attention_call
+
     /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]; all but f and the plans, which
     /// are handles, must outlive it. Throws shape_error if f has another number of frames, value_error if heads do not
     /// divide its channels.
@@ -98,11 +104,18 @@ public:
         auto const& pattern = sources.pattern();
         switch (pattern.meaning) {
         case attention_meaning::own:
-            return attention(Q, *pattern.K, *pattern.V);
+            if (are_alike(sources.scales())) {
+                return attention(Q, *pattern.K, *pattern.V, scale_of(sources, 0));
+            }
+            break;
         case attention_meaning::stack: // All frames have the same keys: one long row of queries.
-            return attention(in_a_row(Q), in_a_row(*pattern.K), in_a_row(*pattern.V)).view_as(Q);
+            if (are_alike(sources.scales())) {
+                return attention(in_a_row(Q), in_a_row(*pattern.K), in_a_row(*pattern.V), scale_of(sources, 0))
+                    .view_as(Q);
+            }
+            break;
         case attention_meaning::own_and_joined:
-            return attend_to_joined(Q, pattern);
+            return attend_to_joined(Q, sources);
         case attention_meaning::listed:
             break;
         }
@@ -114,7 +127,8 @@ public:
                 K.push_back(block.K->narrow(0, static_cast<std::int64_t>(block.frame), 1).to(Q.scalar_type()));
                 V.push_back(block.V->narrow(0, static_cast<std::int64_t>(block.frame), 1).to(Q.scalar_type()));
             }
-            F.push_back(attention(Q.narrow(0, i, 1), at::cat(K, 1), at::cat(V, 1)));
+            F.push_back(attention(Q.narrow(0, i, 1), at::cat(K, 1), at::cat(V, 1),
+                                  scale_of(sources, static_cast<std::size_t>(i))));
         }
         return at::cat(F);
     }
@@ -139,6 +153,55 @@ public:
         return at::addcmul(std::get<0>(bag), own, plan.own.to(type)).view(F_hat.sizes()).to(F_hat.scalar_type());
     }
 
+    /// The same with variance kept (variance_keeping_call), in sums over the tokens of a frame; what F_hat holds at tokens
+    /// that no keyframe covers is multiplied by 0 there and has to be finite. Throws as `mix` does, value_error for a
+    /// most_gain below 1.
+    at::Tensor mix_keeping_variance(at::Tensor const& F_hat, at::Tensor const& F_KF,
+                                    std::span<sparse_rows<float> const> rows, float alpha,
+                                    kept_variance const& kept) const {
+        require_kept_variance("torch_attention_call", kept);
+        if (kept.target == variance_target::none || alpha == 0 || F_hat.numel() == 0) {
+            return mix(F_hat, F_KF, rows, alpha);
+        }
+        require_frames("rows", static_cast<std::int64_t>(rows.size()), static_cast<std::size_t>(F_hat.size(0)));
+        auto const plan = plans_.rows(rows, alpha, F_hat.device());
+        auto const type = c10::promoteTypes(F_hat.scalar_type(), at::kFloat);
+        require_extents("torch_attention_call::mix", "rows", std::array{static_cast<std::size_t>(plan.own.size(0))},
+                        std::array{static_cast<std::size_t>(F_hat.size(0) * F_hat.size(1))});
+        auto const all = F_KF.reshape({-1, F_KF.size(2)}).to(type);
+        auto const shift = all.mean(0, true); // A mean far from 0 costs no digits.
+        auto const X = all - shift;
+        auto const own = F_hat.reshape({-1, F_hat.size(2)}).to(type) - shift;
+        auto const weights = plan.weights.to(type);
+        auto const sum_of = [&](at::Tensor const& x) {
+            constexpr std::int64_t sum = 0;
+            return std::get<0>(at::embedding_bag(x, plan.index, plan.offsets, false, sum, false, weights, true));
+        };
+        auto const by_frames = [&](at::Tensor const& x) { return x.view({F_hat.size(0), F_hat.size(1), -1}); };
+        auto const own_share = plan.own.to(type);
+        auto const blended = sum_of(X);
+        auto const F = by_frames(at::addcmul(blended, own, own_share));
+        auto squares = sum_of(X * X);
+        auto const covered = by_frames((plan.offsets.slice(0, 1) > plan.offsets.slice(0, 0, -1)).to(type).unsqueeze(1));
+        auto const count = covered.sum(1, true);
+        auto const mean_of = [&](at::Tensor const& x, double weight) {
+            return (by_frames(x) * covered).sum(1, true) / (count * weight).clamp_min(1e-30);
+        };
+        auto const mean = mean_of(F, 1);
+        auto const from = mean_of((F - mean).square(), 1);
+        at::Tensor to;
+        if (kept.target == variance_target::total) {
+            to = mean_of(at::addcmul(squares, own * own, own_share), 1) - mean.square();
+        } else {
+            to = mean_of(squares, double{alpha}) - mean_of(blended, double{alpha}).square();
+        }
+        auto const has_gain = (from > 0) & (to > 0) & (count > 1);
+        auto const gain = at::where(has_gain, (to / from).sqrt().clamp(1 / kept.most_gain, kept.most_gain),
+                                    at::ones({}, F.options()));
+        auto const kept_F = at::where(covered > 0, mean + gain * (F - mean), F) + shift;
+        return at::where(covered > 0, kept_F.to(F_hat.scalar_type()), F_hat);
+    }
+
     /// x kept in a format, as storing_attention_call has it.
     at::Tensor stored(at::Tensor const& x, feature_storage storage) const {
         switch (storage) {
@@ -161,23 +224,39 @@ private:
     /// A stack as one frame that has the tokens of all.
     static at::Tensor in_a_row(at::Tensor const& x) { return x.reshape({1, -1, x.size(2)}); }
 
-    /// Frame i of Q over frame i of K and V, in the scalars of Q.
-    at::Tensor attention(at::Tensor const& Q, at::Tensor const& K, at::Tensor const& V) const {
+    /// Whether all frames have the same scale.
+    static bool are_alike(std::span<double const> scales) {
+        return std::adjacent_find(scales.begin(), scales.end(), std::not_equal_to<>()) == scales.end();
+    }
+
+    /// The scale of a frame; 1 where there is no frame.
+    static double scale_of(attention_sources<at::Tensor> const& sources, std::size_t i) {
+        return sources.empty() ? 1.0 : sources.scale(i);
+    }
+
+    /// Frame i of Q over frame i of K and V, in the scalars of Q, with logits times `scale`.
+    at::Tensor attention(at::Tensor const& Q, at::Tensor const& K, at::Tensor const& V, double scale) const {
         auto const by_heads = [&](at::Tensor const& x) {
             return x.to(Q.scalar_type()).unflatten(2, {module_->heads, x.size(2) / module_->heads}).transpose(1, 2);
         };
-        return at::scaled_dot_product_attention(by_heads(Q), by_heads(K), by_heads(V)).transpose(1, 2).flatten(2);
+        auto const d = static_cast<double>(Q.size(2) / module_->heads);
+        auto const of_logits = scale == 1.0 ? std::nullopt : std::optional(scale / std::sqrt(d));
+        return at::scaled_dot_product_attention(by_heads(Q), by_heads(K), by_heads(V), {}, 0.0, false, of_logits)
+            .transpose(1, 2)
+            .flatten(2);
     }
 
-    /// Eq. 5. Frames one after the other that leave out the same keyframe, or none, are a batch.
-    at::Tensor attend_to_joined(at::Tensor const& Q, attention_pattern<at::Tensor> const& pattern) const {
+    /// Eq. 5. Frames one after the other that leave out the same keyframe, or none, and have one scale are a batch.
+    at::Tensor attend_to_joined(at::Tensor const& Q, attention_sources<at::Tensor> const& sources) const {
+        auto const& pattern = sources.pattern();
         auto const frames = static_cast<std::size_t>(Q.size(0));
         auto const left_out = [&](std::size_t i) {
             return pattern.left_out.empty() ? std::nullopt : pattern.left_out[i];
         };
         std::vector<at::Tensor> F;
         for (std::size_t first = 0, count = 1; first < frames; first += count, count = 1) {
-            while (first + count < frames && left_out(first + count) == left_out(first)) {
+            while (first + count < frames && left_out(first + count) == left_out(first) &&
+                   sources.scale(first + count) == sources.scale(first)) {
                 ++count;
             }
             auto const begin = static_cast<std::int64_t>(first);
@@ -191,7 +270,7 @@ private:
                 return at::cat({own.narrow(0, begin, size), in_a_row(kept).expand({size, -1, -1})}, 1);
             };
             F.push_back(attention(Q.narrow(0, begin, size), joined(*pattern.K, *pattern.K_KF),
-                                  joined(*pattern.V, *pattern.V_KF)));
+                                  joined(*pattern.V, *pattern.V_KF), sources.scale(first)));
         }
         return F.size() == 1 ? F.front() : at::cat(F);
     }

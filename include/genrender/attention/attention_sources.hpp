@@ -4,10 +4,16 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/core/error.hpp>
+#include <genrender/core/finite.hpp>
+
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,6 +25,9 @@ struct key_value_block {
     Features const* K = nullptr; ///< keys, a stack [frames, tokens, channels]; not owned
     Features const* V = nullptr; ///< values, of the same frames and tokens as K; not owned
     std::size_t frame = 0;       ///< entry of the frame axis of both
+    /// [tokens] How many keys each key counts for, whole or not, above 0: its logarithm is added to the logits. Not owned;
+    /// null for one each.
+    float const* counts = nullptr;
 };
 
 /// What the lists of blocks of all frames amount to.
@@ -107,6 +116,32 @@ public:
     /// What the lists amount to. Lists that were written to since they were made are attention_meaning::listed.
     attention_pattern<Features> const& pattern() const { return pattern_; }
 
+    /// What the logits of frame i are multiplied by, beside the 1 / sqrt(d) of eq. 1; 1 unless set_scales was called.
+    double scale(std::size_t i) const { return scales_.empty() ? 1.0 : scales_[i]; }
+    /// Whether the logits of some frame are multiplied by other than 1.
+    bool is_scaled() const { return !scales_.empty(); }
+    /// The scales of all frames; none if all are 1.
+    std::span<double const> scales() const { return scales_; }
+    /// Sets the scale of every frame; lists and pattern stay. Throws shape_error for other than one a frame, value_error
+    /// for one that is not finite and above 0.
+    void set_scales(std::vector<double> scales) {
+        require_extents("attention_sources", "scales", std::array{scales.size()}, std::array{lists_.size()});
+        for (auto const scale : scales) {
+            require_value(is_finite(scale) && scale > 0, "attention_sources", "scales", scale, "finite and above 0");
+        }
+        auto const is_one = [](double scale) { return scale == 1.0; };
+        scales_ = std::all_of(scales.begin(), scales.end(), is_one) ? std::vector<double>{} : std::move(scales);
+    }
+
+    /// Whether some key does not count for one, which the pattern does not say.
+    bool counts_keys() const {
+        return std::any_of(lists_.begin(), lists_.end(), [](block_list const& blocks) {
+            return std::any_of(blocks.begin(), blocks.end(), [](auto const& block) { return block.counts != nullptr; });
+        });
+    }
+    /// Sets what the keys of a block of frame i count for; lists and pattern stay.
+    void set_counts(std::size_t i, std::size_t block, float const* counts) { lists_[i][block].counts = counts; }
+
     /// Number of frames.
     std::size_t size() const { return lists_.size(); }
     /// Whether there is no frame.
@@ -131,17 +166,21 @@ public:
     auto end() const { return lists_.end(); }
     /// Past the last frame's list, to be written: the pattern is forgotten.
     auto end() { return written().end(); }
-    /// Adds the list of one more frame: the pattern is forgotten.
-    void push_back(block_list list) { written().push_back(std::move(list)); }
+    /// Adds the list of one more frame, of scale 1: the pattern is forgotten.
+    void push_back(block_list list) {
+        written().push_back(std::move(list));
+        scales_.resize(scales_.empty() ? 0 : lists_.size(), 1.0);
+    }
 
-    /// The same of other features: `of(x)` gives a pointer to what stands for `*x`. The pattern is kept.
+    /// The same of other features: `of(x)` gives a pointer to what stands for `*x`. Pattern and scales are kept.
     template <class Other, class Of>
     attention_sources<Other> of_features(Of const& of) const {
         auto const other = [&](Features const* x) { return x != nullptr ? of(*x) : nullptr; };
         attention_sources<Other> sources(lists_.size());
+        sources.scales_ = scales_;
         for (std::size_t i = 0; i < lists_.size(); ++i) {
             for (auto const& block : lists_[i]) {
-                sources.lists_[i].push_back({other(block.K), other(block.V), block.frame});
+                sources.lists_[i].push_back({other(block.K), other(block.V), block.frame, block.counts});
             }
         }
         auto const& [meaning, K, V, K_KF, V_KF, joined, left_out] = pattern_;
@@ -163,6 +202,7 @@ private:
 
     std::vector<block_list> lists_;
     attention_pattern<Features> pattern_;
+    std::vector<double> scales_; // one a frame; none if all are 1
 };
 
 } // namespace genrender

@@ -7,6 +7,7 @@
 #include <genrender/attention/attention_scratch.hpp>
 #include <genrender/attention/attention_tile.hpp>
 #include <genrender/attention/key_value_view.hpp>
+#include <genrender/core/finite.hpp>
 #include <genrender/core/instance.hpp>
 #include <genrender/core/parallel.hpp>
 #include <genrender/core/stack.hpp>
@@ -33,17 +34,18 @@ inline namespace GENRENDER_UNIT {
 /// are read where they lie, and nothing grows with their number: scratch is about 1 MB a thread of `loop`, which runs
 /// over heads and parts of the queries. A row of F depends on its query and on the sequence of all keys alone, to the
 /// last bit: neither on the other queries, nor on `loop`, nor on where one block ends and the next begins. F shares no
-/// memory with Q, K or V. Throws shape_error if F, K, V or counts do not fit, value_error if heads do not divide the
-/// channels, no block holds a token or a count is not above 0.
+/// memory with Q, K or V. `scale` multiplies the logits beside 1 / sqrt(d), at no cost (length_correction). Throws shape_error if F, K, V or counts do not fit, value_error if heads do not divide the
+/// channels, no block holds a token, a count is not above 0 or the scale is not finite.
 template <class Real>
 void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
                         std::type_identity_t<std::span<key_value_view<Real> const>> blocks, std::size_t heads,
-                        any_loop const& loop = {}) {
+                        any_loop const& loop = {}, std::type_identity_t<Real> scale = 1) {
     auto const tokens = Q.extent(0);
     auto const channels = Q.extent(1);
     require_shape("scaled_dot_product", "F", F, Q.extents());
     require_value(heads > 0 && channels % std::max<std::size_t>(heads, 1) == 0, "scaled_dot_product", "heads", heads,
                   ("a divisor of the " + std::to_string(channels) + " channels").c_str());
+    require_value(is_finite(scale), "scaled_dot_product", "scale", scale, "a finite number");
     std::size_t sources = 0;
     for (auto const& block : blocks) {
         std::array const expected{block.K.extent(0), channels};
@@ -73,7 +75,7 @@ void scaled_dot_product(strided_view<Real, 2> F, in_view<Real, 2> Q,
         auto const first = i % runs * run;
         auto const count = std::min(run, tokens - first);
         attend(detail::head_of(F.slice(first, count), head, head_size),
-               detail::head_of(Q.slice(first, count), head, head_size), blocks, head);
+               detail::head_of(Q.slice(first, count), head, head_size), blocks, head, scale);
     });
 }
 

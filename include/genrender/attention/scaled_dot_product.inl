@@ -26,11 +26,11 @@ void each_query_tile(Real* memory, std::size_t queries, std::size_t head_size, B
     }
 }
 
-/// Attention of some queries of one head, F and Q [queries, head_size]. Each key is read or copied once for all of
+/// Attention of some queries of one head, F and Q [queries, head_size], with logits times `by`. Each key is read or copied once for all of
 /// them.
 template <class Real>
 void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::span<key_value_view<Real> const> blocks,
-                 std::size_t head) {
+                 std::size_t head, Real by) {
     using full = query_tile<Real, tile_registers>;
     auto const queries = Q.extent(0);
     auto const head_size = Q.extent(1);
@@ -44,7 +44,7 @@ void attend_head(strided_view<Real, 2> F, strided_view<Real const, 2> Q, std::sp
     auto* const tile_memory = weights + of_weights;
 
     // exp(x) = 2^(x log2 e).
-    auto const scale = std::numbers::log2e_v<Real> / std::sqrt(static_cast<Real>(head_size));
+    auto const scale = std::numbers::log2e_v<Real> / std::sqrt(static_cast<Real>(head_size)) * by;
     each_query_tile(tile_memory, queries, head_size, [&](auto const& tile, std::size_t first, std::size_t count) {
         read_queries(tile, Q.slice(first, count), scale);
     });

@@ -22,7 +22,8 @@ namespace genrender {
 /// Frames are denoised in their order, one call of the denoiser after the other, so the run's loop has nothing to
 /// share; a larger `settings.frames_per_call` gives the engine more at once. It needs an engine that calls back: what a
 /// static graph is given (feature_io) always includes a frame's own keys. Of the settings it leaves unread: keyframes,
-/// correspondence, alpha, pre_attention, post_attention, keeps_own_copy, first_fill_share.
+/// correspondence, alpha, pre_attention, post_attention, keeps_own_copy, counts_points, variance, first_fill_share. Logits are scaled by
+/// `settings.injection.length_correction` where a frame attends to two others.
 struct pix2video {
     /// None.
     template <class Real>
@@ -47,6 +48,8 @@ struct pix2video {
         shapes.attends_to_stack = shapes.joins_keyframes = shapes.leaves_out = shapes.mixes_rows = false;
         shapes.row_width = 0;
         shapes.lists_sources = in_window > 0;
+        shapes.scales_logits = in_window > 0 && settings.injection.length_correction > 0;
+        shapes.counts_keys = shapes.keeps_variance = false;
         shapes.has_plain_steps = in_window < settings.steps;
         shapes.banks = in_window > 0 ? 2 : 0;
         shapes.storage = feature_storage::same;
@@ -73,7 +76,8 @@ struct pix2video {
             }
             latest_count = frames.size();
             return previous_frame_attention<features_type>(
-                earlier, latest, [&passes](attention_place place) { return passes.takes_part(place); });
+                earlier, latest, [&passes](attention_place place) { return passes.takes_part(place); },
+                passes.logit_scale());
         });
         passes.require_recorded(latest, "frames");
     }

@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
@@ -45,10 +46,10 @@ template <class Features>
 class previous_frame_attention {
 public:
     /// Keeps the stack's K and V in `kept`, for those after it. Everything is referred to and must outlive the
-    /// processor.
+    /// processor. Logits are multiplied by `scale_of`.
     previous_frame_attention(earlier_frames<Features> const& earlier, feature_bank<Features>& kept,
-                             place_filter takes_part)
-        : earlier_(&earlier), kept_(&kept), takes_part_(std::move(takes_part)) {}
+                             place_filter takes_part, logit_scale_function scale_of = {})
+        : earlier_(&earlier), kept_(&kept), takes_part_(std::move(takes_part)), scale_of_(std::move(scale_of)) {}
 
     /// F of eq. 1 over the sources above. Throws value_error unless the stack holds the frames that come next, in their
     /// order, and the stacks before ran this place.
@@ -82,7 +83,8 @@ public:
             }
             previous = {&*own.K_KF, &*own.V_KF, i};
         }
-        Features F = call.attend(projected.Q, sources);
+        scale_by_length(sources, call.place().site, scale_of_);
+        Features F = attend_scaled(call, projected.Q, sources);
         kept_->put(call.place(), std::move(own));
         return F;
     }
@@ -100,6 +102,7 @@ private:
     earlier_frames<Features> const* earlier_;
     feature_bank<Features>* kept_;
     place_filter takes_part_;
+    logit_scale_function scale_of_;
 };
 
 } // namespace genrender

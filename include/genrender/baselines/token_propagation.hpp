@@ -67,7 +67,7 @@ private:
 /// The extra inputs of propagation for a static graph: eq. 6 with alpha = 1 replaces what its attention gave.
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(token_propagation<Features, Real> const& pass, attention_place place,
-                                         std::span<frame_index const> frames) {
+                                         std::span<frame_index const> frames, graph_abilities = {}) {
     feature_inputs<Features, Real> inputs;
     inputs.F_KF = pass.propagated_features(place);
     if (inputs.F_KF != nullptr) {

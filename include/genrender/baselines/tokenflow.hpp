@@ -25,8 +25,8 @@ namespace genrender {
 ///
 /// Keyframes are drawn as `settings.keyframes` says; TokenFlow's own draw is keyframe_drawing::stratified. The report's
 /// coverage counts tokens on objects that a neighbouring keyframe shows. Of the settings it leaves unread: alpha,
-/// pre_attention, post_attention, keeps_own_copy, first_fill_share, and texel_reading::average, of which it takes the
-/// token of greatest weight.
+/// pre_attention, post_attention, keeps_own_copy, counts_points, variance, first_fill_share, and texel_reading::average, of which it takes
+/// the token of greatest weight. Keyframes attend to each other with logits scaled by `settings.injection.length_correction`.
 struct tokenflow {
     /// KF of a step in the window. Throws as draw_keyframes does.
     template <class Real>
@@ -45,11 +45,13 @@ struct tokenflow {
 
     /// Eq. 3 among keyframes, whose outputs are mixed in; a row takes from two keyframes at most, a token of each.
     template <class Real>
-    void shape(render_settings<Real> const&, run_shapes& shapes) const {
+    void shape(render_settings<Real> const& settings, run_shapes& shapes) const {
         auto const has_keyframes = shapes.keyframes > 0;
         shapes.attends_to_stack = has_keyframes;
         shapes.joins_keyframes = shapes.leaves_out = shapes.lists_sources = false;
         shapes.mixes_rows = has_keyframes;
+        shapes.scales_logits = has_keyframes && settings.injection.length_correction > 0;
+        shapes.counts_keys = shapes.keeps_variance = false;
         shapes.row_width = std::min<std::size_t>(shapes.keyframes, 2);
         shapes.banks = has_keyframes ? 1 : 0;
         shapes.storage = has_keyframes ? shapes.storage : feature_storage::same;

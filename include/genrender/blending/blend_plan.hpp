@@ -5,6 +5,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/blending/quality_weights.hpp>
 #include <genrender/blending/texel_weights.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/correspondence/reproject.hpp>
@@ -40,12 +41,6 @@ struct blend_plan {
         }
         return count;
     }
-};
-
-/// How the average texture weighs the keyframes that see a texel.
-enum class texel_average : std::uint8_t {
-    plain,     ///< all alike (the paper's)
-    by_quality ///< by how well they see it, where the correspondence says (graded_correspondence_map)
 };
 
 /// A correspondence_map that answers for all tokens of a frame at once, an optional capability: others are asked token
@@ -113,16 +108,54 @@ blend_plan<Real> plan_of_matches(std::span<std::shared_ptr<token_matches const> 
     return plan;
 }
 
+/// The same with shares other than in proportion to quality, and with thresholds: the last of `matches` is that of the
+/// frame with itself, where there is a threshold.
+template <class Real>
+blend_plan<Real> plan_of_weighed_matches(std::span<std::shared_ptr<token_matches const> const> matches,
+                                         std::span<frame_index const> keyframes, Real first_fill_share,
+                                         texel_average average, quality_weights const& weights) {
+    auto const tokens = matches[0]->tokens.size();
+    blend_plan<Real> plan;
+    plan.offsets.reserve(tokens + 1);
+    std::vector<double> shares;
+    std::vector<frame_index> frames;
+    std::vector<std::uint32_t> sources;
+    for (std::size_t t = 0; t < tokens; ++t) {
+        shares.clear();
+        frames.clear();
+        sources.clear();
+        auto const own = matches.size() > keyframes.size() ? double{matches.back()->qualities[t]} : 0;
+        for (std::size_t k = 0; k < keyframes.size(); ++k) {
+            auto const quality = double{matches[k]->qualities[t]};
+            if (matches[k]->is_shown[t] != 0 && is_good_match(quality, own, weights.threshold)) {
+                shares.push_back(quality);
+                frames.push_back(keyframes[k]);
+                sources.push_back(static_cast<std::uint32_t>(k * tokens) + matches[k]->tokens[t]);
+            }
+        }
+        average_shares(shares, frames, average, weights.exponent);
+        for (std::size_t position = 0; position < shares.size(); ++position) {
+            auto const share = static_cast<Real>(shares[position]);
+            if (auto const weight = unified_weight<Real>(position, share, first_fill_share); weight > 0) {
+                plan.sources.push_back(sources[position]);
+                plan.weights.push_back(weight);
+            }
+        }
+        plan.offsets.push_back(static_cast<std::uint32_t>(plan.sources.size()));
+    }
+    return plan;
+}
+
 } // namespace detail
 
 /// Compiles the plan that gives frame i its F_bar = pi_i(T_bar), T_bar = unified texture of `keyframes` in their order:
 /// a token whose surface point is seen by several keyframes mixes them by unified_weight, a token that no keyframe
-/// covers has no entry. Throws value_error if a frame does not exist, no keyframe is given or the share is outside [0,
+/// covers has no entry. `weights` say what qualities do (quality_weights). Throws value_error if a frame does not exist, no keyframe is given or the share is outside [0,
 /// 1].
 template <class Real, correspondence_map Map>
 blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> keyframes, frame_index i,
                                  std::type_identity_t<Real> first_fill_share = Real(0.5),
-                                 texel_average average = texel_average::plain) {
+                                 texel_average average = texel_average::plain, quality_weights const& weights = {}) {
     require_frame("make_blend_plan", "i", map, i);
     require_value(!keyframes.empty(), "make_blend_plan", "keyframes", "empty", "at least one keyframe");
     for (auto const keyframe : keyframes) {
@@ -132,9 +165,15 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
                   first_fill_share, "a share in [0, 1]");
 
     if constexpr (matched_correspondence_map<Map>) {
-        auto const matches = map.matches(i, keyframes);
+        std::vector<frame_index> to(keyframes.begin(), keyframes.end());
+        if (weights.threshold > 0) {
+            to.push_back(i); // How well the frame itself shows what it shows.
+        }
+        auto const matches = map.matches(i, to);
         if (!matches.empty()) {
-            return detail::plan_of_matches<Real>(matches, first_fill_share, average);
+            return weights.are_plain() && average != texel_average::winner
+                       ? detail::plan_of_matches<Real>(matches, first_fill_share, average)
+                       : detail::plan_of_weighed_matches<Real>(matches, keyframes, first_fill_share, average, weights);
         }
     }
 
@@ -149,13 +188,20 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
     std::vector<source_token> sources;
     std::vector<std::size_t> first_of; // the first source of each keyframe that sees the point
     std::vector<double> quality;
+    std::vector<frame_index> seen_by;
+    auto const asks_quality = average != texel_average::plain || weights.threshold > 0;
     for (std::uint32_t t = 0; t < tokens; ++t) {
         auto const point = map.point_at(i, {t});
         if (point) {
             sources.clear();
             first_of.clear();
             quality.clear();
+            seen_by.clear();
             double quality_sum = 0;
+            double own = 0;
+            if constexpr (graded_correspondence_map<Map>) {
+                own = weights.threshold > 0 ? map.quality_at(i, *point) : 0;
+            }
             for (std::size_t k = 0; k < keyframes.size(); ++k) {
                 auto const before = sources.size();
                 if constexpr (weighted_correspondence_map<Map>) {
@@ -165,22 +211,33 @@ blend_plan<Real> make_blend_plan(Map const& map, std::span<frame_index const> ke
                 } else if (auto const token = map.token_at(keyframes[k], *point)) {
                     sources.push_back({k, *token, 1});
                 }
+                double of_keyframe = 0;
+                if constexpr (graded_correspondence_map<Map>) {
+                    of_keyframe = asks_quality && sources.size() > before ? map.quality_at(keyframes[k], *point) : 0;
+                }
+                if (!is_good_match(of_keyframe, own, weights.threshold)) {
+                    sources.resize(before);
+                }
                 if (sources.size() > before) {
                     first_of.push_back(before);
-                    quality.push_back(0);
-                    if constexpr (graded_correspondence_map<Map>) {
-                        if (average == texel_average::by_quality) {
-                            quality.back() = map.quality_at(keyframes[k], *point);
-                            quality_sum += quality.back();
-                        }
-                    }
+                    seen_by.push_back(keyframes[k]);
+                    quality.push_back(average == texel_average::plain ? 0 : of_keyframe);
+                    quality_sum += quality.back();
                 }
             }
             auto const seen = first_of.size();
             first_of.push_back(sources.size());
+            auto const are_shares = average == texel_average::winner || weights.exponent != 1;
+            if (are_shares) {
+                average_shares(quality, seen_by, average, weights.exponent);
+            }
             for (std::size_t position = 0; position < seen; ++position) {
-                auto const weight = unified_weight<Real>(
-                    position, average_weight_by_quality<Real>(quality[position], quality_sum, seen), first_fill_share);
+                auto const share = are_shares ? static_cast<Real>(quality[position])
+                                              : average_weight_by_quality<Real>(quality[position], quality_sum, seen);
+                auto const weight = unified_weight<Real>(position, share, first_fill_share);
+                if (are_shares && !(weight > 0)) {
+                    continue; // A keyframe without a share is no source.
+                }
                 for (auto s = first_of[position]; s < first_of[position + 1]; ++s) {
                     plan.sources.push_back(
                         static_cast<std::uint32_t>(sources[s].keyframe * tokens + sources[s].token.value));

@@ -32,15 +32,13 @@ namespace genrender::detail {
 
 inline namespace GENRENDER_UNIT {
 
-/// mix_rows for features stored as any type.
+/// Throws, in the name of `function`, for features and rows that do not fit.
 template <class Real, class Stored>
-void mix_stored_rows(strided_view<Real, 2> F, strided_view<Stored const, 3> const& F_KF, sparse_rows<Real> const& rows,
-                     Real alpha, any_loop const& loop) {
-    auto const tokens = F.extent(0);
-    auto const channels = F.extent(1);
-    require_shape("mix_rows", "F_KF", F_KF, {F_KF.extent(0), F_KF.extent(1), channels});
-    if (rows.row_count() != tokens) {
-        require_extents("mix_rows", "rows", std::array{rows.row_count()}, std::array{tokens});
+void require_mixable(char const* function, strided_view<Real, 2> const& F, strided_view<Stored const, 3> const& F_KF,
+                     sparse_rows<Real> const& rows) {
+    require_shape(function, "F_KF", F_KF, {F_KF.extent(0), F_KF.extent(1), F.extent(1)});
+    if (rows.row_count() != F.extent(0)) {
+        require_extents(function, "rows", std::array{rows.row_count()}, std::array{F.extent(0)});
     }
     if (!rows.sources.empty()) {
         // One comparison in all: the greatest source.
@@ -48,10 +46,17 @@ void mix_stored_rows(strided_view<Real, 2> F, strided_view<Stored const, 3> cons
         for (auto const source : rows.sources) {
             greatest = std::max(greatest, source);
         }
-        require_value(greatest < F_KF.extent(0) * F_KF.extent(1), "mix_rows", "rows.sources", greatest,
+        require_value(greatest < F_KF.extent(0) * F_KF.extent(1), function, "rows.sources", greatest,
                       "a row of the features' keyframes and tokens");
     }
+}
 
+/// mix_rows for features stored as any type.
+template <class Real, class Stored>
+void mix_stored_rows(strided_view<Real, 2> F, strided_view<Stored const, 3> const& F_KF, sparse_rows<Real> const& rows,
+                     Real alpha, any_loop const& loop) {
+    require_mixable("mix_rows", F, F_KF, rows);
+    auto const tokens = F.extent(0);
     auto const mix = GENRENDER_KERNEL(detail, mix_tokens<Real, Stored>);
     constexpr std::size_t tokens_a_call = 256;
     loop((tokens + tokens_a_call - 1) / tokens_a_call, [&](std::size_t call) {

@@ -101,6 +101,9 @@ typedef struct genrender_sources {
     genrender_block const* blocks; ///< of all frames
     size_t const* offsets;         ///< frames + 1 of them
     size_t frames;                 ///< of the queries
+    float const*
+        scales; ///< a frame each: what its logits are multiplied by beside 1 / sqrt(d); null if all by 1, and for
+                ///< engines without `scales_logits`
 } genrender_sources;
 
 /// One frame's rows of eq. 6: F_bar[t] is the sum of weights[e] F_KF[sources[e]] for e from offsets[t] to offsets[t + 1]
@@ -121,6 +124,7 @@ typedef struct genrender_inputs {
     genrender_rows const* rows;     ///< a frame each; null without F_KF
     float alpha;                    ///< eq. 6: F becomes alpha F_bar + (1 - alpha) F where a row has entries
     int is_recorded;                ///< not 0: f and F are to be handed to `record`
+    float const* scales;            ///< as in genrender_sources
 } genrender_inputs;
 
 /// What the library does at self-attention modules during one call of `denoise`.
@@ -168,6 +172,7 @@ typedef struct genrender_engine {
     /// F of eq. 6 from F_hat and one genrender_rows a frame, in a new handle; null for a failure.
     genrender_features* (*mix)(void* context, genrender_call const* call, genrender_features const* F_hat,
                                genrender_features const* F_KF, genrender_rows const* rows, float alpha);
+    int scales_logits; ///< not 0: `attend` and graphs honour `scales`; else runs that scale logits are refused
 } genrender_engine;
 
 /// The name of the function that a library of an engine exports, as dlsym takes it, and its type.

@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/attention_call.hpp>
+#include <genrender/attention/length_correction.hpp>
 #include <genrender/c/engine.h>
 
 #include <cstddef>
@@ -44,6 +45,9 @@ private:
     std::shared_ptr<genrender_features> held_;
 };
 
+/// Scales of logits as the engine takes them.
+inline std::vector<float> scales_of(std::span<double const> scales) { return {scales.begin(), scales.end()}; }
+
 /// Rows of each frame as the engine takes them.
 inline std::vector<genrender_rows> rows_of(std::span<sparse_rows<float> const> rows) {
     std::vector<genrender_rows> plain;
@@ -69,6 +73,8 @@ public:
     using features_type = engine_features; ///< the engine's handle
     using real_type = float;               ///< type of the weights of mix
 
+    static constexpr bool scales_logits = true; ///< scaling_attention_call, as far as the engine says so
+
     /// Refers to both.
     engine_call(genrender_engine const& engine, genrender_call const& call)
         : engine_(&engine), call_(&call), frames_(frames_of(call.frames, call.frame_count)) {}
@@ -85,8 +91,14 @@ public:
     engine_features key(engine_features const& f) const { return made(engine_->key, "key", f.get()); }
     /// W^V f.
     engine_features value(engine_features const& f) const { return made(engine_->value, "value", f.get()); }
-    /// [GR eq. 1], each frame of the queries attending to its sources.
+    /// [GR eq. 1], each frame of the queries attending to its sources. Throws value_error if they are scaled and the
+    /// engine has no `scales_logits`.
     engine_features attend(engine_features const& Q, attention_sources<engine_features> const& sources) const {
+        if (sources.is_scaled() && engine_->scales_logits == 0) {
+            throw value_error("engine_call: logits are scaled, expected a length_correction of 0 for an engine without "
+                              "scales_logits");
+        }
+        auto const scales = scales_of(sources.scales());
         std::vector<genrender_block> blocks;
         std::vector<std::size_t> offsets{0};
         for (auto const& list : sources) {
@@ -95,8 +107,9 @@ public:
             }
             offsets.push_back(blocks.size());
         }
-        return made(engine_->attend, "attend", Q.get(),
-                    genrender_sources{blocks.data(), offsets.data(), sources.size()});
+        return made(
+            engine_->attend, "attend", Q.get(),
+            genrender_sources{blocks.data(), offsets.data(), sources.size(), scales.empty() ? nullptr : scales.data()});
     }
     /// F of eq. 6.
     engine_features mix(engine_features const& F_hat, engine_features const& F_KF,

@@ -70,7 +70,8 @@ private:
     feature_inputs<engine_features, float> inputs_of([[maybe_unused]] attention_place place,
                                                      [[maybe_unused]] std::span<frame_index const> frames) const {
         if constexpr (is_for_graphs) {
-            return inputs_at<engine_features, float>(std::as_const(*processor_), place, frames);
+            graph_abilities const able{.scales_logits = engine_->scales_logits != 0};
+            return inputs_for<engine_features, float>(std::as_const(*processor_), place, frames, able);
         } else {
             throw value_error("engine_denoiser: the processor has no inputs_at(processor, place, frames), expected a "
                               "feature_io_processor for an engine that asks for inputs");
@@ -112,6 +113,7 @@ private:
             auto& kept = pass.given_.emplace_back();
             kept.rows = rows_of(in.rows);
             kept.left_out = std::move(left_out);
+            kept.scales = scales_of(in.scales);
             kept.in = std::move(in);
             *to = {kept.in.attends_to_stack ? 1 : 0,
                    kept.in.f_KF != nullptr ? kept.in.f_KF->get() : nullptr,
@@ -119,7 +121,8 @@ private:
                    kept.in.F_KF != nullptr ? kept.in.F_KF->get() : nullptr,
                    kept.in.F_KF != nullptr ? kept.rows.data() : nullptr,
                    kept.in.alpha,
-                   kept.in.is_recorded ? 1 : 0};
+                   kept.in.is_recorded ? 1 : 0,
+                   kept.scales.empty() ? nullptr : kept.scales.data()};
         })
                    ? 0
                    : 1;
@@ -153,6 +156,7 @@ private:
         feature_inputs<engine_features, float> in;
         std::vector<std::int32_t> left_out;
         std::vector<genrender_rows> rows;
+        std::vector<float> scales;
     };
 
     genrender_processor table_;

@@ -12,6 +12,7 @@
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/keyframes/stoppable_denoiser.hpp>
 #include <genrender/sampling/denoiser.hpp>
+#include <genrender/sampling/run_demands.hpp>
 #include <genrender/sampling/run_shapes.hpp>
 #include <genrender/sampling/storing_denoiser.hpp>
 
@@ -39,8 +40,9 @@ public:
           record_(&record_as<Processor>), is_plain_at_(&plain_as<Processor>) {}
 
     any_features run(any_attention_call<Real>& call) const { return run_(processor_, call); }
-    feature_inputs<any_features, Real> inputs(attention_place place, std::span<frame_index const> frames) const {
-        return inputs_at_(processor_, place, frames);
+    feature_inputs<any_features, Real> inputs(attention_place place, std::span<frame_index const> frames,
+                                              graph_abilities able) const {
+        return inputs_at_(processor_, place, frames, able);
     }
     void record(attention_place place, any_features f, any_features F) const {
         record_(processor_, place, std::move(f), std::move(F));
@@ -58,11 +60,11 @@ private:
         }
     }
     template <class Processor>
-    static feature_inputs<any_features, Real> inputs_as([[maybe_unused]] void const* object,
-                                                        [[maybe_unused]] attention_place place,
-                                                        [[maybe_unused]] std::span<frame_index const> frames) {
+    static feature_inputs<any_features, Real>
+    inputs_as([[maybe_unused]] void const* object, [[maybe_unused]] attention_place place,
+              [[maybe_unused]] std::span<frame_index const> frames, [[maybe_unused]] graph_abilities able) {
         if constexpr (feature_io_processor<Processor, any_features, Real>) {
-            return inputs_at<any_features, Real>(*static_cast<Processor const*>(object), place, frames);
+            return inputs_for<any_features, Real>(*static_cast<Processor const*>(object), place, frames, able);
         } else {
             throw value_error("any_denoiser: the processor has no inputs_at(processor, place, frames), expected a "
                               "feature_io_processor for a denoiser that is a static graph");
@@ -82,7 +84,8 @@ private:
 
     void const* processor_;
     any_features (*run_)(void const*, any_attention_call<Real>&);
-    feature_inputs<any_features, Real> (*inputs_at_)(void const*, attention_place, std::span<frame_index const>);
+    feature_inputs<any_features, Real> (*inputs_at_)(void const*, attention_place, std::span<frame_index const>,
+                                                     graph_abilities);
     void (*record_)(void const*, attention_place, any_features, any_features);
     bool (*is_plain_at_)(void const*, attention_place);
 };
@@ -103,8 +106,9 @@ public:
     auto operator()(Call&) const { require_attention_call<Call>(); }
     bool is_plain_at(attention_place place) const { return processor_->is_plain_at(place); }
 
-    feature_inputs<Features, Real> inputs(attention_place place, std::span<frame_index const> frames) const {
-        auto held = processor_->inputs(place, frames);
+    feature_inputs<Features, Real> inputs(attention_place place, std::span<frame_index const> frames,
+                                          graph_abilities able) const {
+        auto held = processor_->inputs(place, frames, able);
         feature_inputs<Features, Real> own;
         own.attends_to_stack = held.attends_to_stack;
         own.f_KF = held.f_KF != nullptr ? &held.f_KF->template as<Features>() : nullptr;
@@ -112,6 +116,8 @@ public:
         own.F_KF = held.F_KF != nullptr ? &held.F_KF->template as<Features>() : nullptr;
         own.rows = std::move(held.rows);
         own.alpha = held.alpha;
+        own.scales = std::move(held.scales);
+        own.variance = held.variance;
         own.is_recorded = held.is_recorded;
         return own;
     }
@@ -125,8 +131,8 @@ private:
 
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(engine_processor<Features, Real> const& pass, attention_place place,
-                                         std::span<frame_index const> frames) {
-    return pass.inputs(place, frames);
+                                         std::span<frame_index const> frames, graph_abilities able = {}) {
+    return pass.inputs(place, frames, able);
 }
 template <class Features, class Real>
 void record_features(engine_processor<Features, Real> const& pass, attention_place place,
@@ -188,6 +194,7 @@ struct held_denoiser final : denoiser_model<typename Phi::real_type> {
     }
     void prepare(run_shapes const& shapes) const override {
         require_storage<Phi>(shapes.storage);
+        require_demands<Phi>(shapes);
         prepare_denoiser(phi, shapes);
     }
     std::size_t residual_bytes() const override {

@@ -5,7 +5,10 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/attention/attention_processor.hpp>
+#include <genrender/attention/kept_variance.hpp>
 #include <genrender/attention/plain_attention.hpp>
+#include <genrender/core/error.hpp>
+#include <genrender/injection/graph_abilities.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/keyframes/recorder.hpp>
 
@@ -30,35 +33,70 @@ struct feature_inputs {
     Features const* F_KF = nullptr;                   ///< eq. 6: F_bar^i = rows[i] * F_KF, by gather or by mix_rows
     std::vector<sparse_rows<Real>> rows;              ///< per frame, the plan; empty without F_KF
     Real alpha = 0;                                   ///< eq. 6
+    /// What the logits of each frame are multiplied by, beside 1 / sqrt(d); empty if all by 1, as it is for engines
+    /// whose graph_abilities do not say scales_logits.
+    std::vector<double> scales{};
+    kept_variance variance{}; ///< that eq. 6 keeps; none for engines whose graph_abilities do not say keeps_variance
     bool is_recorded = false; ///< whether the graph's f and F are to be handed to `record_features`
 };
 
+namespace detail {
+
+/// Throws value_error for inputs that ask for more than the engine says that it can.
+template <class Features, class Real>
+void require_abilities_for(feature_inputs<Features, Real> const& inputs, graph_abilities abilities) {
+    if (!inputs.scales.empty() && !abilities.scales_logits) {
+        throw value_error("inputs_at: logits are scaled, expected a length_correction of 0 for an engine whose "
+                          "graph_abilities do not say scales_logits");
+    }
+    if (inputs.variance.target != variance_target::none && !abilities.keeps_variance) {
+        throw value_error("inputs_at: variance is to be kept, expected variance_target::none for an engine whose "
+                          "graph_abilities do not say keeps_variance");
+    }
+}
+
+/// Throws value_error for a pass that counts keys, which no static graph is told.
+template <class Pass>
+void require_uncounted(Pass const& pass, attention_place place) {
+    if (pass.counts_keys(place)) {
+        throw value_error("inputs_at: keys are counted, expected counts_points to be false for a static graph");
+    }
+}
+
+} // namespace detail
+
 /// The extra inputs that plain attention asks for: none.
 template <class Features, class Real>
-feature_inputs<Features, Real> inputs_at(plain_attention const&, attention_place, std::span<frame_index const>) {
+feature_inputs<Features, Real> inputs_at(plain_attention const&, attention_place, std::span<frame_index const>,
+                                         graph_abilities = {}) {
     return {};
 }
 
 /// The extra inputs of the keyframe pass. Throws value_error if features of the place are to be kept in 16 bits and have
-/// no `stored`.
+/// no `stored`, or logits are scaled and the engine does not say that it can.
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(recorder<Features> const& pass, attention_place place,
-                                         std::span<frame_index const>) {
+                                         std::span<frame_index const> frames, graph_abilities abilities = {}) {
     feature_inputs<Features, Real> inputs;
     inputs.attends_to_stack = pass.attends_to_stack(place);
     inputs.is_recorded = pass.records(place);
+    inputs.scales = pass.scales(place, frames.size());
+    detail::require_uncounted(pass, place);
+    detail::require_abilities_for(inputs, abilities);
     pass.note_question(place);
     return inputs;
 }
 
 /// The extra inputs of the injected pass for `frames`. Throws value_error if the keyframe pass ran with callbacks,
-/// which keep no f_KF.
+/// which keep no f_KF, or asks for more than the engine says that it can.
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(injector<Features, Real> const& pass, attention_place place,
-                                         std::span<frame_index const> frames) {
+                                         std::span<frame_index const> frames, graph_abilities abilities = {}) {
     feature_inputs<Features, Real> inputs;
+    detail::require_uncounted(pass, place);
     inputs.f_KF = pass.joined_features(place);
     if (inputs.f_KF != nullptr) {
+        inputs.scales = pass.scales(place, frames);
         for (auto const frame : frames) {
             inputs.left_out.push_back(pass.left_out(frame));
         }
@@ -67,7 +105,9 @@ feature_inputs<Features, Real> inputs_at(injector<Features, Real> const& pass, a
     if (inputs.F_KF != nullptr) {
         inputs.rows = pass.rows_at(place.site, frames);
         inputs.alpha = pass.alpha(place.site);
+        inputs.variance = pass.variance();
     }
+    detail::require_abilities_for(inputs, abilities);
     return inputs;
 }
 
@@ -115,13 +155,40 @@ concept feature_io_processor = requires(Processor const& processor, attention_pl
     record_features(processor, place, f, f);
 };
 
+/// A feature_io_processor that may ask for more than eqs. 1 to 6, an optional capability: others never do.
+///
+/// expression                                                   | type           | meaning
+/// -------------------------------------------------------------|----------------|--------------------------------------
+/// `inputs_at<Features, Real>(processor, place, frames, able)`  | feature_inputs | the same for an engine of these
+///                                                              |                | graph_abilities. Throws value_error
+///                                                              |                | if it is to do what it cannot
+///
+/// A model owes that the form without abilities throws where it asks for any.
+template <class Processor, class Features, class Real>
+concept demanding_feature_io_processor = feature_io_processor<Processor, Features, Real> &&
+    requires(Processor const& processor, attention_place place, std::span<frame_index const> frames,
+             graph_abilities able) {
+    { inputs_at<Features, Real>(processor, place, frames, able) } -> std::same_as<feature_inputs<Features, Real>>;
+};
+
+/// The inputs of a place for an engine of these abilities, by the form of inputs_at that the processor has.
+template <class Features, class Real, class Processor>
+feature_inputs<Features, Real> inputs_for(Processor const& processor, attention_place place,
+                                          std::span<frame_index const> frames, graph_abilities able) {
+    if constexpr (demanding_feature_io_processor<Processor, Features, Real>) {
+        return inputs_at<Features, Real>(processor, place, frames, able);
+    } else {
+        return inputs_at<Features, Real>(processor, place, frames);
+    }
+}
+
 /// The least that a feature_io_processor is, for checking denoisers; never run. The archetype of both ways in is one,
 /// so that the concept denoiser also holds for engines that ask for a feature_io_processor.
 using feature_io_processor_archetype = attention_processor_archetype;
 /// The inputs of a place; never run.
 template <class Features, class Real>
 feature_inputs<Features, Real> inputs_at(feature_io_processor_archetype const&, attention_place,
-                                         std::span<frame_index const>);
+                                         std::span<frame_index const>, graph_abilities able = {});
 /// Takes what a place put out; never run.
 template <class Features>
 void record_features(feature_io_processor_archetype const&, attention_place, Features const&, Features const&);

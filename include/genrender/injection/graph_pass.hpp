@@ -28,11 +28,13 @@ enum class graph_pass : std::uint8_t {
     injected  ///< eqs. 5 and 6 with what was recorded
 };
 
-/// The pass that a processor runs, and by that the graph that a call takes.
+/// The pass that a processor runs, and by that the graph that a call takes. Throws as inputs_at does for an engine of
+/// these abilities.
 template <class Features, class Real, class Processor>
-graph_pass graph_pass_of(Processor const& processor, run_shapes const& shapes, std::span<frame_index const> frames) {
+graph_pass graph_pass_of(Processor const& processor, run_shapes const& shapes, std::span<frame_index const> frames,
+                         graph_abilities able = {}) {
     for (auto const place : shapes.places) {
-        auto const in = inputs_at<Features, Real>(processor, place, frames);
+        auto const in = inputs_for<Features, Real>(processor, place, frames, able);
         if (in.is_recorded || in.attends_to_stack) {
             return graph_pass::keyframe;
         }

@@ -11,6 +11,7 @@
 #include <genrender/injection/post_attention.hpp>
 
 #include <cstddef>
+#include <deque>
 #include <span>
 #include <utility>
 #include <vector>
@@ -43,6 +44,9 @@ class host_attention_call {
 public:
     using real_type = Real;                    ///< type of the weights of mix
     using features_type = host_features<Real>; ///< features in host memory
+
+    static constexpr bool scales_logits = true; ///< scaling_attention_call
+    static constexpr bool counts_keys = true;   ///< counting_attention_call
 
     /// One run at `place` for `frames`, of a module with input f [frames, tokens, channels]. Throws shape_error if f
     /// has another number of frames. `frames`, f and `module` must outlive the call.
@@ -80,11 +84,18 @@ public:
         auto F = features_type::allocate(Q.extents());
         loop_(sources.size(), [&](std::size_t i) {
             std::vector<key_value_view<Real>> blocks;
+            std::deque<std::vector<Real>> counts; // of blocks that have some
             blocks.reserve(sources[i].size());
             for (auto const& block : sources[i]) {
                 blocks.push_back({rows_of(*block.K, block.frame), rows_of(*block.V, block.frame)});
+                if (block.counts != nullptr) {
+                    auto const tokens = blocks.back().K.extent(0);
+                    auto const& of = counts.emplace_back(block.counts, block.counts + tokens);
+                    blocks.back().counts = strided_view<Real const, 1>(of.data(), {tokens});
+                }
             }
-            scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads(), loop_);
+            scaled_dot_product(F.view()[i], Q.view()[i], blocks, module_->heads(), loop_,
+                               static_cast<Real>(sources.scale(i)));
         });
         return F;
     }
@@ -92,9 +103,16 @@ public:
     /// [GR eq. 6] in place of F_hat.
     features_type mix(features_type const& F_hat, features_type const& F_KF, std::span<sparse_rows<Real> const> rows,
                       Real alpha) const {
+        return mix_keeping_variance(F_hat, F_KF, rows, alpha, {});
+    }
+
+    /// The same with variance kept, as variance_keeping_call has it.
+    features_type mix_keeping_variance(features_type const& F_hat, features_type const& F_KF,
+                                       std::span<sparse_rows<Real> const> rows, Real alpha,
+                                       kept_variance const& kept) const {
         require_extents("host_attention_call::mix", "rows", std::array{rows.size()}, std::array{F_hat.extents()[0]});
         loop_(rows.size(), [&](std::size_t i) {
-            F_KF.visit([&](auto const& kept) { post_attention(F_hat.view()[i], kept, rows[i], alpha); });
+            F_KF.visit([&](auto const& stored) { post_attention(F_hat.view()[i], stored, rows[i], alpha, kept); });
         });
         return F_hat;
     }

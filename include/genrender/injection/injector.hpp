@@ -4,8 +4,12 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/attention/kept_variance.hpp>
+#include <genrender/attention/key_counts.hpp>
+#include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/blending/blend_plans.hpp>
+#include <genrender/blending/point_counts.hpp>
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/injection/injection_settings.hpp>
 #include <genrender/injection/pre_attention.hpp>
@@ -30,37 +34,45 @@ public:
     using alpha_function = std::function<Real(site_index)>;
 
     /// Injects from `bank`, recorded of `keyframes` in this order; both must outlive the injector. `plans` hold those of
-    /// the frames of its calls; post-attention alone reads them.
+    /// the frames of its calls; post-attention and counts of points alone read them. Logits are multiplied by `scale_of`.
     injector(
         feature_bank<Features> const& bank, std::span<frame_index const> keyframes, blend_plans<Real> plans,
-        injection_settings settings = {}, alpha_function alpha = [](site_index) { return Real(paper_alpha); })
-        : bank_(&bank), keyframes_(keyframes), plans_(std::move(plans)), settings_(settings), alpha_(std::move(alpha)) {
-    }
+        injection_settings settings = {}, alpha_function alpha = [](site_index) { return Real(paper_alpha); },
+        logit_scale_function scale_of = {})
+        : bank_(&bank), keyframes_(keyframes), plans_(std::move(plans)), settings_(settings), alpha_(std::move(alpha)),
+          scale_of_(std::move(scale_of)) {}
 
     /// F_out of eq. 6, where F_hat attends over the sources of eq. 5. Throws value_error if the keyframe pass ran as a
     /// static graph, which gives no K_KF, and shape_error if K_KF or V_KF is of another number of frames than there are
-    /// keyframes (injected_attention_sources).
+    /// keyframes (injected_attention_sources); as attend_scaled and mixed_features do.
     template <attention_call Call>
     Features operator()(Call& call) const {
         auto const frames = call.frames();
         auto const* const kept = bank_->find(call.place());
         projected_features<Features> const own = projections_of(call, call.f());
         auto sources = own_attention_sources(own.K, own.V, frames.size());
+        std::vector<std::vector<float>> counts;
         if (kept != nullptr && settings_.pre_attention) {
             require_value(kept->K_KF && kept->V_KF, "injector", "K_KF", "missing", "keyframes recorded by callbacks");
             std::vector<std::optional<std::size_t>> drops;
             for (auto const frame : frames) {
                 drops.push_back(left_out(frame));
             }
-            sources =
-                injected_attention_sources(own.K, own.V, *kept->K_KF, *kept->V_KF, keyframes_.size(), std::move(drops));
+            sources = injected_attention_sources(own.K, own.V, *kept->K_KF, *kept->V_KF, keyframes_.size(), drops);
+            if (settings_.counts_points) {
+                auto const of_frame = [this](site_index site, frame_index frame) {
+                    return point_counts(plans_.rows(site, frame), keyframes_.size());
+                };
+                counts = count_keys(sources, call.place().site, frames, of_frame, drops);
+            }
         }
-        Features F_hat = call.attend(own.Q, sources);
+        scale_by_length(sources, call.place().site, scale_of_);
+        Features F_hat = attend_scaled(call, own.Q, sources);
         if (kept == nullptr || !settings_.post_attention) {
             return F_hat;
         }
         auto const rows = plans_.rows(call.place().site, frames);
-        return call.mix(F_hat, *kept->F_KF, rows, alpha_(call.place().site));
+        return mixed_features<Call>(call, F_hat, *kept->F_KF, rows, alpha_(call.place().site), settings_.variance);
     }
 
     /// Says what a call lacks that is none.
@@ -89,6 +101,24 @@ public:
         return &*kept->f_KF;
     }
 
+    /// What the logits of each frame are multiplied by at a place; none if all by 1.
+    std::vector<double> scales(attention_place place, std::span<frame_index const> frames) const {
+        if (!scale_of_ || !settings_.pre_attention || is_plain_at(place)) {
+            return {};
+        }
+        std::vector<double> scales;
+        for (auto const frame : frames) {
+            scales.push_back(scale_of_(place.site, 1 + keyframes_.size() - (left_out(frame) ? 1 : 0)));
+        }
+        auto const is_one = [](double scale) { return scale == 1.0; };
+        return std::all_of(scales.begin(), scales.end(), is_one) ? std::vector<double>{} : scales;
+    }
+
+    /// Whether keys at a place do not count for one each.
+    bool counts_keys(attention_place place) const {
+        return settings_.counts_points && settings_.pre_attention && !is_plain_at(place);
+    }
+
     /// F_KF that eq. 6 mixes in at a place; null where nothing is injected.
     Features const* blended_features(attention_place place) const {
         auto const* const kept = bank_->find(place);
@@ -99,6 +129,9 @@ public:
     std::vector<sparse_rows<Real>> rows_at(site_index site, std::span<frame_index const> frames) const {
         return plans_.rows(site, frames);
     }
+
+    /// The variance that eq. 6 keeps.
+    kept_variance const& variance() const { return settings_.variance; }
 
     /// alpha of eq. 6 at a site.
     Real alpha(site_index site) const { return alpha_(site); }
@@ -118,6 +151,7 @@ private:
     blend_plans<Real> plans_;
     injection_settings settings_;
     alpha_function alpha_;
+    logit_scale_function scale_of_;
 };
 
 } // namespace genrender

@@ -21,6 +21,7 @@ namespace genrender {
 enum class keyframe_drawing : std::uint8_t {
     uniform,    ///< any m different frames, all alike likely (default)
     stratified, ///< one frame of each of m equal stretches of the animation
+    held,       ///< any m different frames, drawn once: the same in every step, in the same order
     fixed       ///< the same given frames in every step, in the order given
 };
 
@@ -33,7 +34,7 @@ struct keyframe_settings {
 };
 
 /// KF = shuffle({i_1, ..., i_m}): different frames of an animation of `frame_count` frames, in an order drawn anew each
-/// `step`, which is also the order in which their features fill the texture. Every step can be asked for alone. Throws
+/// `step` (but for held ones), which is also the order in which their features fill the texture. Every step can be asked for alone. Throws
 /// value_error if no keyframe is asked for, more than there are frames, or fixed ones repeat or do not exist.
 inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings, std::size_t frame_count,
                                                std::size_t step) {
@@ -50,8 +51,9 @@ inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings
     require_value(m >= 1 && m <= frame_count, "draw_keyframes", "count", m,
                   ("1 to the animation's " + std::to_string(frame_count) + " frames").c_str());
     auto const draw_below = [&](std::size_t bound, std::uint32_t draw) {
-        return uniform_below(static_cast<std::uint32_t>(bound), settings.seed, random_stream::keyframes,
-                             {static_cast<std::uint32_t>(step), draw, 0});
+        return uniform_below(
+            static_cast<std::uint32_t>(bound), settings.seed, random_stream::keyframes,
+            {static_cast<std::uint32_t>(settings.drawing == keyframe_drawing::held ? 0 : step), draw, 0});
     };
 
     std::vector<frame_index> keyframes;

@@ -6,12 +6,16 @@
 
 #include <genrender/attention/extended_attention.hpp>
 #include <genrender/attention/feature_storage.hpp>
+#include <genrender/attention/key_counts.hpp>
+#include <genrender/attention/length_correction.hpp>
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/keyframes/feature_bank.hpp>
 
+#include <cstddef>
 #include <functional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace genrender {
 
@@ -25,14 +29,17 @@ class recorder {
 public:
     /// Records into `bank`, which must outlive the recorder. With `extended` keyframes attend to each other (eq. 3),
     /// else each to itself (the ablation without pre-attention injection). Features are kept in the format of
-    /// `storage`; keyframes attend to each other before they are rounded to it.
+    /// `storage`; keyframes attend to each other before they are rounded to it, with logits times `scale_of` and
+    /// keys that count as `counts_of` says.
     recorder(feature_bank<Features>& bank, place_filter takes_part, bool extended = true,
-             feature_storage storage = feature_storage::same)
-        : bank_(&bank), takes_part_(std::move(takes_part)), extended_(extended), storage_(storage) {}
+             feature_storage storage = feature_storage::same, logit_scale_function scale_of = {},
+             key_count_function counts_of = {})
+        : bank_(&bank), takes_part_(std::move(takes_part)), extended_(extended), storage_(storage),
+          scale_of_(std::move(scale_of)), counts_of_(std::move(counts_of)) {}
 
     /// F of eq. 1 over the sources of eq. 3; keeps K_KF, V_KF and F_KF of the place, in 16 bits as `stored` gives them,
     /// which is asked in this order. Throws value_error before anything is computed if the call cannot store features
-    /// in the format asked for.
+    /// in the format asked for, or scale logits.
     template <attention_call Call>
     Features operator()(Call& call) const {
         auto const frames = call.frames().size();
@@ -41,9 +48,12 @@ public:
             require_storing_call<Call>(storage_);
         }
         projected_features<Features> const own = projections_of(call, call.f());
-        auto const sources = is_recorded && extended_ ? extended_attention_sources(own.K, own.V, frames)
-                                                      : own_attention_sources(own.K, own.V, frames);
-        Features F = call.attend(own.Q, sources);
+        auto sources = is_recorded && extended_ ? extended_attention_sources(own.K, own.V, frames)
+                                                : own_attention_sources(own.K, own.V, frames);
+        scale_by_length(sources, call.place().site, scale_of_);
+        auto const counts_of = is_recorded && extended_ ? counts_of_ : nullptr;
+        auto const counts = count_keys(sources, call.place().site, call.frames(), counts_of);
+        Features F = attend_scaled(call, own.Q, sources);
         if (is_recorded) {
             keyframe_features<Features> kept;
             kept.K_KF = stored_features(call, own.K, storage_);
@@ -80,6 +90,15 @@ public:
     /// Whether frames of the stack attend to each other at a place; asked by engines whose graph is static.
     bool attends_to_stack(attention_place place) const { return extended_ && takes_part_(place); }
 
+    /// What the logits of the frames of a stack are multiplied by at a place, one a frame; none if all by 1.
+    std::vector<double> scales(attention_place place, std::size_t frames) const {
+        auto const scale = scale_of_ && attends_to_stack(place) ? scale_of_(place.site, frames) : 1.0;
+        return scale == 1.0 ? std::vector<double>{} : std::vector<double>(frames, scale);
+    }
+
+    /// Whether keys at a place do not count for one each.
+    bool counts_keys(attention_place place) const { return counts_of_ && attends_to_stack(place); }
+
     /// Notes that a static graph has asked what to do at a place that takes part: it owes `record` its features.
     void note_question(attention_place place) const {
         if (takes_part_(place)) {
@@ -103,6 +122,8 @@ private:
     place_filter takes_part_;
     bool extended_;
     feature_storage storage_;
+    logit_scale_function scale_of_;
+    key_count_function counts_of_;
 };
 
 } // namespace genrender

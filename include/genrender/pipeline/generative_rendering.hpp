@@ -6,6 +6,7 @@
 
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/blending/blend_plans.hpp>
+#include <genrender/blending/point_counts.hpp>
 #include <genrender/injection/injector.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/pipeline/render_settings.hpp>
@@ -17,6 +18,11 @@
 #include <vector>
 
 namespace genrender {
+
+/// Whether plans are made in steps with keyframes: for eq. 6, or to count the keys of a surface point.
+inline bool makes_plans(injection_settings const& injection) {
+    return injection.post_attention || (injection.pre_attention && injection.counts_points);
+}
 
 /// Whether a step draws keyframes: it lies in the window, and something is injected.
 template <class Real>
@@ -37,10 +43,10 @@ struct generative_rendering {
                                              : std::vector<frame_index>{};
     }
 
-    /// Post-attention injection needs them, in any step that has keyframes.
+    /// Needs them if it makes plans, in any step that has keyframes.
     template <class Real>
     bool uses_correspondence(render_settings<Real> const& settings) const {
-        for (std::size_t step = 0; settings.injection.post_attention && step < settings.steps; ++step) {
+        for (std::size_t step = 0; makes_plans(settings.injection) && step < settings.steps; ++step) {
             if (has_keyframes(settings, step)) {
                 return true;
             }
@@ -58,6 +64,9 @@ struct generative_rendering {
         shapes.mixes_rows = has_keyframes && settings.injection.post_attention;
         shapes.row_width = shapes.mixes_rows ? shapes.row_width : 0;
         shapes.lists_sources = false;
+        shapes.scales_logits = shapes.attends_to_stack && settings.injection.length_correction > 0;
+        shapes.counts_keys = shapes.attends_to_stack && settings.injection.counts_points;
+        shapes.keeps_variance = shapes.mixes_rows && settings.injection.variance.target != variance_target::none;
         shapes.banks = has_keyframes ? 1 : 0;
         shapes.storage = has_keyframes ? shapes.storage : feature_storage::same;
     }
@@ -73,21 +82,34 @@ struct generative_rendering {
             passes.denoise_frames_alone();
             return;
         }
+        auto const weights = settings.quality.at(passes.step(), settings.steps);
+        auto const make_plan = [&](auto const& map, frame_index i) {
+            return make_blend_plan<real_type>(map, KF, i, settings.first_fill_share, settings.average, weights);
+        };
+        blend_plans<real_type> of_keyframes;
+        key_count_function counts;
+        if (settings.injection.pre_attention && settings.injection.counts_points) {
+            of_keyframes = passes.make_plans(KF, make_plan);
+            counts = [&](site_index site, frame_index frame) {
+                return point_counts_of_stack(of_keyframes.rows(site, frame), KF.size());
+            };
+        }
         // f_KF, F_KF <- Phi(z_KF, D_KF, c)
-        auto const bank = passes.record_keyframes(KF, settings.injection.pre_attention);
+        auto const bank = passes.record_keyframes(KF, settings.injection.pre_attention, counts);
 
         // z^i <- Phi(z^i, D^i, c, f_KF, F_bar^i), F_bar^i = pi_i(T_bar_KF)
         passes.denoise_frames([&](std::span<frame_index const> frames) {
             blend_plans<real_type> plans;
-            if (settings.injection.post_attention) {
+            if (makes_plans(settings.injection)) {
                 plans = passes.make_plans(frames, [&](auto const& map, frame_index i) {
-                    auto plan = make_blend_plan<real_type>(map, KF, i, settings.first_fill_share, settings.average);
+                    auto plan = make_plan(map, i);
                     passes.report_coverage(map.grid(), i, plan.covered_count());
                     return plan;
                 });
             }
-            return injector_type(bank, KF, std::move(plans), settings.injection,
-                                 [&passes](site_index site) { return passes.alpha(site); });
+            return injector_type(
+                bank, KF, std::move(plans), settings.injection,
+                [&passes](site_index site) { return passes.alpha(site); }, passes.logit_scale());
         });
     }
 };

@@ -166,8 +166,10 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
             }
             largest_recorded = std::max(largest_recorded, elements);
             bytes.bank += 3 * m * elements * feature_bytes<Real>(settings.keyframe_storage);
-            if (settings.injection.post_attention) {
+            if (makes_plans(settings.injection)) {
                 grids.insert(site.grid);
+            }
+            if (settings.injection.post_attention) {
                 work.mixed_bytes +=
                     injected_evaluations * frames * N * C *
                     static_cast<double>(2 * sizeof(Real) + m * feature_bytes<Real>(settings.keyframe_storage));
@@ -195,6 +197,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     bytes.keyframe_latents = 2 * m * latent_bytes;
     bytes.residuals = settings.reuses_keyframes ? m * run.residual_bytes.value_or(0) : 0;
     std::size_t making = 0;
+    auto const of_keyframes = settings.injection.pre_attention && settings.injection.counts_points ? m : 0;
     for (auto const& grid : grids) {
         if (!by_texels) {
             auto const matching_of = run.map_dimensions == 3 ? detail::matching_of<3> : detail::matching_of<2>;
@@ -204,7 +207,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
         }
         auto const entries = by_texels ? detail::grown_capacity(grid.size() * m) : grid.size() * m + 1;
         bytes.blend_plans +=
-            at_once * ((grid.size() + 1) * sizeof(std::uint32_t) + entries * (sizeof(std::uint32_t) + sizeof(Real)));
+            (at_once + of_keyframes) * ((grid.size() + 1) * sizeof(std::uint32_t) + entries * (sizeof(std::uint32_t) + sizeof(Real)));
     }
     // Recorded features of the site that is running are counted in the bank. If they are copies of 16 bits, these are
     // made after attention, when a call holds less by about as much.

@@ -16,6 +16,7 @@
 #include <genrender/pipeline/shapes_of_run.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 #include <genrender/sampling/latent_lender.hpp>
+#include <genrender/sampling/run_demands.hpp>
 #include <genrender/sampling/run_shapes.hpp>
 #include <genrender/sampling/storing_denoiser.hpp>
 
@@ -54,6 +55,11 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
                    settings.normalization.window_end);
     require_value(settings.first_fill_share >= 0 && settings.first_fill_share <= 1, "render",
                   "settings.first_fill_share", settings.first_fill_share, "a share in [0, 1]");
+    require_value(is_finite(settings.injection.length_correction) && settings.injection.length_correction >= 0,
+                  "render", "settings.injection.length_correction", settings.injection.length_correction,
+                  "a finite number, 0 or more");
+    require_kept_variance("render", settings.injection.variance);
+    require_quality_settings("render", settings.quality);
     require_value(settings.layers != nullptr, "render", "settings.layers", "empty", "a function");
     require_value(settings.alpha != nullptr, "render", "settings.alpha", "empty", "a function");
     evaluations(settings.sampler, settings.steps);
@@ -247,6 +253,7 @@ render(Phi const& phi, Maps const& UV,
         report.add_seconds(0, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         auto const shapes = shapes_of_run(phi, settings, N, maps, method);
         require_storage<Phi>(shapes.storage);
+        require_demands<Phi>(shapes);
         prepare_denoiser(phi, shapes);
 
         // for t = T, ..., 1: what the method does, for alg. 1 keyframes, features, blending and injection; normalisation

@@ -8,6 +8,7 @@
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/correspondence/chosen_correspondence.hpp>
+#include <genrender/injection/alpha_schedule.hpp>
 #include <genrender/injection/injection_settings.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/noise/initial_noise.hpp>
@@ -45,13 +46,12 @@ struct render_settings {
     /// Sites and branches that take part in the injection. Like alpha it may be called from several threads at once.
     std::function<bool(attention_site const&, std::uint32_t branch)> layers = is_in_decoder;
     /// alpha of eq. 6, by step and site.
-    std::function<Real(std::size_t step, attention_site const&)> alpha = [](std::size_t, attention_site const&) {
-        return Real(paper_alpha);
-    };
+    alpha_schedule<Real> alpha = constant_alpha(Real(paper_alpha));
     injection_settings injection;      ///< eq. 3, 5 and 6
     Real first_fill_share = Real(0.5); ///< of the inpainted texture in the unified one
     /// How the average texture weighs keyframes; plain is the paper's.
     texel_average average = texel_average::by_quality;
+    quality_settings quality; ///< what qualities do besides; the default takes shares in proportion to quality
     /// Steps with keyframes and injection: those whose share step / steps lies in [window_begin, window_end).
     Real window_begin = 0;
     Real window_end = 1; ///< see window_begin
@@ -67,6 +67,32 @@ struct render_settings {
     /// How many calls of the denoiser may run at the same time; the run's loop then shares the library's own work alone
     /// among more threads. 0 leaves it to the loop; 1 is for an engine with one graph, context or device.
     std::size_t calls_at_once = 0;
+
+    /// The paper to the letter, where it says what to do and the defaults do something else: texels and noise read from
+    /// texels, T of both matched to the maps, average of keyframes alike, latent normalisation of mean and deviation, eq. 6
+    /// with its alpha, and attention and variance as they come.
+    static render_settings paper() {
+        render_settings settings;
+        settings.correspondence.kind = correspondence_kind::texel_grid;
+        settings.average = texel_average::plain;
+        settings.noise.reading = noise_reading::nearest_texel;
+        settings.normalization.statistics = adain_statistics::mean_and_deviation;
+        settings.alpha = constant_alpha(Real(paper_alpha));
+        settings.injection = {};
+        settings.quality = {};
+        settings.first_fill_share = Real(0.5);
+        return settings;
+    }
+
+    /// Consistent and vivid, what measured best: eq. 6 is kept and gives back the variance that its sources have, and
+    /// logits have the length-corrected temperature.
+    static render_settings vivid() {
+        render_settings settings;
+        settings.injection.length_correction = 1;
+        settings.injection.variance.target = variance_target::sources;
+        // The consensus of clean estimates is switched on here.
+        return settings;
+    }
 
     /// Does not compile, with a sentence (pipeline/render.hpp): settings are of the scalar of the denoiser.
     template <class Other>

@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <mutex>
 #include <ranges>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -71,7 +72,8 @@ public:
 
     /// alpha of eq. 6 at a site in this step.
     real_type alpha(site_index site) const { return settings().alpha(step_, run_->phi->sites()[site.value]); }
-
+    /// What logits are multiplied by where frames are joined.
+    auto logit_scale() const { return length_scale(run_->phi->sites(), settings().injection.length_correction); }
     /// An empty bank for features of all places.
     feature_bank<features_type> new_bank() const {
         return {static_cast<std::size_t>(std::ranges::size(run_->phi->sites())), run_->phi->branches()};
@@ -81,12 +83,14 @@ public:
     /// keeps their features at the places that take part; with `extended` they attend to each other (eq. 3). Throws
     /// value_error if the denoiser did not run the processor at one of these places, or cannot store features as the
     /// settings say.
-    feature_bank<features_type> record_keyframes(std::vector<frame_index> const& KF, bool extended) const {
+    feature_bank<features_type> record_keyframes(std::vector<frame_index> const& KF, bool extended,
+                                                 key_count_function counts = {}) const {
         run_->meter->begin(step_, render_pass::keyframes, KF.size());
         auto const start = clock::now();
         auto bank = new_bank();
-        auto const participates = [this](attention_place place) { return takes_part(place); };
-        recorder<features_type> const record(bank, participates, extended, settings().keyframe_storage);
+        auto const of = [this](attention_place place) { return takes_part(place); };
+        recorder<features_type> const record(bank, of, extended, settings().keyframe_storage, logit_scale(),
+                                             std::move(counts));
         auto const denoiser = run_keyframes(KF, record);
         run_->report->add_seconds(denoiser, seconds_since(start) - denoiser);
         require_recorded(bank, "keyframes");
@@ -122,9 +126,7 @@ public:
             grid_of_site.push_back(site.grid);
         }
         blend_plans<real_type> plans(std::move(grid_of_site), evaluation_);
-        std::vector<frame_index> different(frames.begin(), frames.end());
-        std::sort(different.begin(), different.end());
-        different.erase(std::unique(different.begin(), different.end()), different.end());
+        std::set<frame_index> const different(frames.begin(), frames.end());
         struct wanted_plan {
             grid_extents grid;
             Map const* map;
@@ -171,19 +173,17 @@ public:
 
 private:
     using clock = std::chrono::steady_clock;
-
-    static double seconds_since(clock::time_point start) {
-        return std::chrono::duration<double>(clock::now() - start).count();
-    }
+    using seconds = std::chrono::duration<double>;
+    static double seconds_since(clock::time_point start) { return seconds(clock::now() - start).count(); }
 
     /// The keyframe pass of a denoiser that can end it early, or of one that estimates frames that nobody asked for. Gives
     /// the seconds of the denoiser.
     double run_keyframes(std::vector<frame_index> const& KF, recorder<features_type> const& record) const {
-        double seconds = 0;
+        double taken = 0;
         auto const timed = [&](auto const& run) {
             auto const begin = clock::now();
             run();
-            seconds = seconds_since(begin);
+            taken = seconds_since(begin);
         };
         if constexpr (stoppable_denoiser<Phi>) {
             auto const last = last_sites(*run_->phi, [this](attention_place place) { return takes_part(place); });
@@ -201,7 +201,7 @@ private:
             latents_.read_and_drop(
                 KF, [&](auto const&... x0_and_z) { timed([&] { (*run_->phi)(x0_and_z..., sigma_, KF, record); }); });
         }
-        return seconds;
+        return taken;
     }
 
     /// One call of the denoiser for the frames from `first` on, repeated up to `count` where the animation ends before.
@@ -274,8 +274,8 @@ private:
         });
         latents_.end();
         auto const share = in_denoiser / std::max(in_denoiser + outside, 1e-12);
-        auto const seconds = seconds_since(pass_start);
-        run_->report->add_seconds(seconds * share, seconds * (1 - share));
+        auto const taken = seconds_since(pass_start);
+        run_->report->add_seconds(taken * share, taken * (1 - share));
     }
 
     sequence_run<Phi, Map> const* run_;

@@ -59,6 +59,9 @@ run_shapes shapes_of_run(Phi const& phi, render_settings<Real> const& settings, 
         shapes.row_width = std::max(shapes.row_width, max_row_width(map, shapes.keyframes));
     }
     shapes.storage = settings.keyframe_storage;
+    shapes.scales_logits = settings.injection.length_correction > 0;
+    shapes.counts_keys = settings.injection.counts_points;
+    shapes.keeps_variance = settings.injection.variance.target != variance_target::none;
     if constexpr (shaping_method<Method, Real>) {
         method.shape(settings, shapes);
     }

@@ -28,6 +28,9 @@ struct run_shapes {
     bool leaves_out = true;              ///< eq. 5: some frames leave out one keyframe, which takes a mask
     bool mixes_rows = true;              ///< eq. 6: rows of F_KF are mixed in
     bool lists_sources = true;           ///< sources that are none of eqs. 1, 3 and 5 (attention_meaning::listed)
+    bool scales_logits = false;          ///< logits of joined keys are multiplied (length_correction)
+    bool counts_keys = false;            ///< keys of one surface point count together for one (point_counts)
+    bool keeps_variance = false;         ///< eq. 6 keeps variance (mix_rows_keeping_variance)
     bool has_plain_steps = true;         ///< steps in which every frame is left to itself
     feature_storage storage = feature_storage::same; ///< how features of keyframes are kept
     /// Stacks of features of a place that are alive at a time beside those of the calls under way: 1 for the keyframes

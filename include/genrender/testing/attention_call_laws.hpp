@@ -11,6 +11,7 @@
 #include <genrender/core/sparse_rows.hpp>
 #include <genrender/testing/denoiser_laws.hpp>
 #include <genrender/testing/law_report.hpp>
+#include <genrender/testing/optional_call_laws.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -36,58 +37,10 @@ struct kept_handles {
     Features F;
 };
 
-/// Plans of a stack in which a row sums two entries of one source row, so that the weights are seen to be added up:
-/// row t of frame i is row t of frame `of_frame[i]` of F_KF.
-template <class Real>
-class doubled_rows {
-public:
-    doubled_rows(std::span<std::size_t const> of_frame, std::size_t tokens) {
-        for (std::size_t t = 0; t <= tokens; ++t) {
-            offsets_.push_back(static_cast<std::uint32_t>(2 * t));
-        }
-        no_offsets_.assign(tokens + 1, 0);
-        for (auto const frame : of_frame) {
-            sources_.emplace_back();
-            for (std::size_t t = 0; t < tokens; ++t) {
-                sources_.back().insert(sources_.back().end(), 2, static_cast<std::uint32_t>(frame * tokens + t));
-                weights_.insert(weights_.end(), {Real(0.75), Real(0.25)});
-            }
-        }
-        weights_.resize(2 * tokens);
-    }
-
-    std::vector<sparse_rows<Real>> covered() const {
-        std::vector<sparse_rows<Real>> rows;
-        for (auto const& sources : sources_) {
-            rows.push_back({offsets_, sources, weights_});
-        }
-        return rows;
-    }
-    std::vector<sparse_rows<Real>> uncovered() const {
-        return std::vector<sparse_rows<Real>>(sources_.size(), sparse_rows<Real>{no_offsets_, {}, {}});
-    }
-
-private:
-    std::vector<std::uint32_t> offsets_;
-    std::vector<std::uint32_t> no_offsets_;
-    std::vector<std::vector<std::uint32_t>> sources_;
-    std::vector<Real> weights_;
-};
-
-/// The attention of a call with its own queries over given sources.
-template <class Call, class MakeSources>
-typename Call::features_type attend_to(Call& call, MakeSources const& make_sources) {
-    using features = typename Call::features_type;
-    features const f = call.f();
-    features const Q = call.query(f);
-    features const K = call.key(f);
-    features const V = call.value(f);
-    return call.attend(Q, make_sources(K, V, std::size_t{call.frames().size()}));
-}
-
 } // namespace detail
 
-/// Checks the laws of attention_call, and of storing_ and projecting_attention_call where the calls are such, on the calls that `phi`
+/// Checks the laws of attention_call, and of storing_, projecting_ and scaling_attention_call and variance_keeping_call where
+/// the calls are such, on the calls that `phi`
 /// makes at noise level sigma for the frames of the trial. The library cannot look into an engine's features, so every
 /// law is told by estimates that must be equal; a denoiser whose estimates do not depend on its attention passes
 /// whatever its calls do. For denoisers that call their processor back; about 20 calls of all frames. Throws
@@ -221,6 +174,8 @@ law_report check_attention_call_laws(Phi const& phi, typename Phi::real_type sig
                          "with f of an ended call projected, x0", other_stack.estimate(projected_again),
                          expected_reversed, trial.tolerance);
 
+    detail::check_scaling_laws(report, trials, expected, trial.tolerance);
+
     // -- mix
     std::vector<std::size_t> mirrored;
     for (std::size_t i = 0; i < frames; ++i) {
@@ -256,6 +211,9 @@ law_report check_attention_call_laws(Phi const& phi, typename Phi::real_type sig
     detail::require_same(report, "attention_call: mix weighs F_bar by alpha and F_hat by 1 - alpha",
                          "with F_bar equal to F_hat, x0", other_stack.estimate(half_of_it), expected_reversed,
                          trial.tolerance);
+
+    detail::check_variance_laws(report, trials, expected, trial.tolerance,
+                                [&](attention_place place) { return of(place).F; });
 
     // -- storage in 16 bits
     bool is_stored = false;
