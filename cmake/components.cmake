@@ -77,6 +77,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     maps/background_mask.hpp
     maps/canonical_maps.hpp
     maps/cell_extents.hpp
+    maps/cell_shares.hpp
     maps/depth_maps.hpp
     maps/uv_convention.hpp
     maps/uv_maps.hpp
@@ -147,6 +148,8 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/blend_plan.hpp
     blending/blend_plans.hpp
     blending/call_rows.hpp
+    blending/consensus.hpp
+    blending/consensus_settings.hpp
     blending/mix_rows.hpp
     blending/mix_rows.inl
     blending/padded_rows.hpp
@@ -162,8 +165,12 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     injection/pre_attention.hpp
     normalization/adain.hpp
     normalization/adain.inl
+    normalization/adain_settings.hpp
     normalization/channel_statistics.hpp
     normalization/channel_statistics.inl
+    normalization/low_band.hpp
+    normalization/supported_gain.hpp
+    pipeline/estimate_consensus.hpp
     pipeline/generative_rendering.hpp
     pipeline/memory_plan.hpp
     pipeline/progress.hpp

@@ -6,6 +6,7 @@
 
 #include <genrender/core/finite.hpp>
 #include <genrender/normalization/adain.hpp>
+#include <genrender/pipeline/estimate_consensus.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/sequence_passes.hpp>
 #include <genrender/pipeline/sequence_method.hpp>
@@ -31,7 +32,8 @@ std::size_t step_at(std::span<Real const> sigmas, std::type_identity_t<Real> sig
     return step;
 }
 
-/// D(z, sigma) of a whole animation: a method's estimates of all frames, normalised. Any sampler drives it; it keeps
+/// D(z, sigma) of a whole animation: a method's estimates of all frames, in consensus and normalised where settings say
+/// so. Any sampler drives it; it keeps
 /// nothing from one evaluation to the next, and what it draws depends on the seed and the noise level alone.
 template <denoiser Phi, correspondence_map Map,
           sequence_method<sequence_passes<Phi, Map>> Method = generative_rendering>
@@ -40,14 +42,15 @@ public:
     using real_type = typename Phi::real_type;         ///< scalar of the latents
     using features_type = typename Phi::features_type; ///< the engine's handle of features
 
-    /// `sigmas` are the run's noise levels; `background` [frames, height, width] of the latents. Everything but the
-    /// method is referred to and must outlive the sequence denoiser.
+    /// `sigmas` are the run's noise levels; `background` and `shares` [frames, height, width] of the latents, the latter
+    /// those of cell_shares for a consensus that fades at silhouettes, else nothing. Everything but the method is referred
+    /// to and must outlive the sequence denoiser.
     sequence_denoiser(Phi const& phi, correspondence_set<Map> const& maps,
                       strided_view<std::uint8_t const, 3> background, std::span<real_type const> sigmas,
                       render_settings<real_type> const& settings, any_loop loop, progress_meter& meter,
-                      report_writer& report, Method method = {})
-        : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, background_(background), sigmas_(sigmas),
-          method_(std::move(method)) {}
+                      report_writer& report, Method method = {}, strided_view<std::uint8_t const, 3> shares = {})
+        : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, background_(background), shares_(shares),
+          sigmas_(sigmas), method_(std::move(method)) {}
 
     /// The clean estimates of all frames of z [frames, channels, height, width] at noise level sigmas[step]; a second
     /// evaluation within a step, such as Heun's, is one of the step that begins at its level. Throws value_error if an
@@ -56,6 +59,7 @@ public:
         auto x0 = latents<real_type>::from_shape(z.shape());
         method_(sequence_passes<Phi, Map>(run_, x0, z, sigma, step));
         require_finite(x0, step);
+        reach_consensus(run_, to_view(x0), shares_, step);
         auto const& normalization = run_.settings->normalization;
         if (!normalization.on_noisy_latents) {
             normalize(x0, step);
@@ -103,6 +107,7 @@ private:
 
     sequence_run<Phi, Map> run_;
     strided_view<std::uint8_t const, 3> background_;
+    strided_view<std::uint8_t const, 3> shares_;
     std::span<real_type const> sigmas_;
     Method method_;
 };
