@@ -169,6 +169,8 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     normalization/channel_statistics.hpp
     normalization/channel_statistics.inl
     normalization/low_band.hpp
+    normalization/low_band_latents.hpp
+    normalization/normalization_target.hpp
     normalization/supported_gain.hpp
     pipeline/estimate_consensus.hpp
     pipeline/generative_rendering.hpp

@@ -120,6 +120,8 @@
 #include <genrender/normalization/adain_settings.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
 #include <genrender/normalization/low_band.hpp>
+#include <genrender/normalization/low_band_latents.hpp>
+#include <genrender/normalization/normalization_target.hpp>
 #include <genrender/normalization/supported_gain.hpp>
 
 #include <genrender/pipeline/estimate_consensus.hpp>

@@ -54,6 +54,7 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
     require_value(settings.first_fill_share >= 0 && settings.first_fill_share <= 1, "render",
                   "settings.first_fill_share", settings.first_fill_share, "a share in [0, 1]");
     require_consensus_settings("render", settings.consensus, settings.steps);
+    require_adain_settings("render", settings.normalization);
     require_value(settings.layers != nullptr, "render", "settings.layers", "empty", "a function");
     require_value(settings.alpha != nullptr, "render", "settings.alpha", "empty", "a function");
     evaluations(settings.sampler, settings.steps);
