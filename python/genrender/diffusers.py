@@ -154,7 +154,8 @@ def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, s
 
     `maps` are genrender.Maps with depth. Of `keyframes` None is 4, or all frames if these are fewer; 0 renders every frame by
     itself, as the pipeline does. `alpha` is a number or a function of step and name of the module;
-    `normalization` is mean, mean_and_deviation or None. Raises ValueError for what does not fit.
+    `normalization` is mean, mean_and_supported_deviation, low_band, mean_and_deviation (the paper's) or None. Raises ValueError
+    for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
     for name, value, least in (("keyframes", keyframes, 0), ("frames_per_call", frames_per_call, 1)):
