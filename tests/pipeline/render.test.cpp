@@ -190,7 +190,7 @@ TEST_SUITE("pipeline/render") {
         auto const maps = testing::random_scene(40, 12, {64, 64}, 3);
         testing::analytic_denoiser<double> const phi{.grid = {16, 16}, .attention = 0.3};
         texel_grid const pixels(to_uv_view(maps), {16, 16});
-        auto const compare = [&](char const* name, auto const& render_with) {
+        auto const compare = [&](std::string const& name, auto const& render_with) {
             auto settings = few_steps();
             settings.noise.kind = noise_kind::independent;
             auto const without = render_with(settings, false);
