@@ -77,6 +77,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     maps/background_mask.hpp
     maps/canonical_maps.hpp
     maps/cell_extents.hpp
+    maps/cell_shares.hpp
     maps/depth_maps.hpp
     maps/uv_convention.hpp
     maps/uv_maps.hpp
@@ -154,6 +155,8 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     blending/blend_plan.hpp
     blending/blend_plans.hpp
     blending/call_rows.hpp
+    blending/consensus.hpp
+    blending/consensus_settings.hpp
     blending/mix_rows.hpp
     blending/mix_rows.inl
     blending/mix_rows_keeping_variance.hpp
@@ -175,9 +178,15 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     injection/pre_attention.hpp
     normalization/adain.hpp
     normalization/adain.inl
+    normalization/adain_settings.hpp
     normalization/channel_statistics.hpp
     normalization/channel_statistics.inl
     normalization/latent_normalizer.hpp
+    normalization/low_band.hpp
+    normalization/low_band_latents.hpp
+    normalization/normalization_target.hpp
+    normalization/supported_gain.hpp
+    pipeline/estimate_consensus.hpp
     pipeline/generative_rendering.hpp
     pipeline/memory_plan.hpp
     pipeline/pass_latents.hpp

@@ -95,6 +95,7 @@ inline std::vector<std::pair<std::string, std::size_t>> named_bytes(planned_byte
             {"keyframe_residuals", bytes.residuals},
             {"keyframe_latents", bytes.keyframe_latents},
             {"blend_plans", bytes.blend_plans},
+            {"consensus", bytes.consensus},
             {"network", bytes.network},
             {"peak", bytes.peak}};
 }
@@ -114,6 +115,8 @@ inline nlohmann::ordered_json plan_json(timed_plan const& timed) {
     json["projection_flops"] = work.projection_flops;
     json["mixed_bytes"] = work.mixed_bytes;
     json["noise_values"] = work.noise_values;
+    json["consensus_bytes"] = work.consensus_bytes;
+    json["consensus_matches"] = work.consensus_matches;
     json["normalized_bytes"] = work.normalized_bytes;
     json["weights_bytes"] = timed.weights_bytes ? nlohmann::ordered_json(*timed.weights_bytes) : nullptr;
     json["decoding_bytes"] = timed.decoding.bytes ? nlohmann::ordered_json(*timed.decoding.bytes) : nullptr;
@@ -147,6 +150,7 @@ inline std::string plan_text(timed_plan const& timed) {
                        {"projections of the network, GFLOP", fixed_text(work.projection_flops / 1e9, 2)},
                        {"features mixed, GB", fixed_text(work.mixed_bytes / 1e9, 3)},
                        {"noise, million values", fixed_text(work.noise_values / 1e6, 2)},
+                       {"latents in consensus, GB", fixed_text(work.consensus_bytes / 1e9, 3)},
                        {"latents normalised, GB", fixed_text(work.normalized_bytes / 1e9, 3)},
                        {"denoiser, minutes, about", fixed_text(seconds / 60, 2)},
                        {"decoding, seconds a picture, about", fixed_text(timed.decoding.seconds, 2)}});

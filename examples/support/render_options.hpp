@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../scenes/scenes.hpp"
+#include "consistency_options.hpp"
 #include "correspondence_options.hpp"
 #include "injection_options.hpp"
 #include "names.hpp"
@@ -69,6 +70,7 @@ struct render_options {
     bool is_plan = false;       ///< tells what the run will take and renders nothing
     correspondence_options correspondence;
     injection_options injection;
+    consistency_options consistency;
     render_settings<float> settings;
 };
 
@@ -225,10 +227,9 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     bool adain_deviations = false;
     ours->add_flag("--no-pre", no_pre, "no pre-attention injection (eq. 3 and 5)");
     ours->add_flag("--no-post", no_post, "no post-attention injection (eq. 6)");
-    auto* const without = ours->add_flag("--no-adain", no_adain, "no latent normalisation");
-    ours->add_flag("--adain-deviations", adain_deviations,
-                   "latent normalisation of means and deviations, the paper's; of means alone without it")
-        ->excludes(without);
+    auto* const without = ours->add_flag("--no-adain", no_adain, "the same as --normalization none");
+    auto* const deviations =
+        ours->add_flag("--adain-deviations", adain_deviations, "the same as --normalization paper")->excludes(without);
 
     std::string storage = "same";
     ours->add_option("--feature-storage", storage,
@@ -238,6 +239,7 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         ->type_name("FORMAT");
 
     options.correspondence.add_to(app);
+    options.consistency.add_to(app)->excludes(without)->excludes(deviations);
     app.add_flag("--check", options.is_check,
                  "look before you run: what the maps are good for, as preflight.txt, .json and .png in OUT");
     app.add_flag("--plan", options.is_plan,
@@ -347,6 +349,18 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         options.correspondence.default_to(settings, app);
         options.correspondence.apply_to(settings);
         options.injection.apply_to(settings);
+        settings.injection.pre_attention = !no_pre;
+        settings.injection.post_attention = !no_post;
+        settings.normalization.enabled = !no_adain;
+        if (adain_deviations) {
+            settings.normalization.statistics = adain_statistics::mean_and_deviation;
+        }
+        if (options.method == render_method::per_frame) {
+            settings = per_frame(settings);
+        } else if (options.method != render_method::generative_rendering) {
+            settings = baseline_settings(settings);
+        }
+        options.consistency.apply_to(settings);
     } catch (CLI::ParseError const& error) {
         throw no_run{app.exit(error) == 0 ? 0 : 2};
     }
@@ -361,20 +375,10 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         options.keyframes = keyframes;
     }
     settings.sampler = value_in(sampler_names, sampler_name);
-    settings.injection.pre_attention = !no_pre;
-    settings.injection.post_attention = !no_post;
-    settings.normalization.enabled = !no_adain;
-    if (adain_deviations) {
-        settings.normalization.statistics = adain_statistics::mean_and_deviation;
-    }
     settings.keyframe_storage = value_in(storage_names, storage);
     settings.noise.seed = options.seed;
     settings.keyframes.seed = options.seed;
-    if (options.method == render_method::per_frame) {
-        settings = per_frame(settings);
-    } else if (options.method != render_method::generative_rendering) {
-        settings = baseline_settings(settings);
-    }
+    settings.consensus.sources.seed = options.seed;
     if (noise_option->count() > 0) {
         settings.noise.kind = value_in(noise_names, noise);
     }

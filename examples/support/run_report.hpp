@@ -17,6 +17,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -125,9 +126,15 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
         told["feature_storage"] = name_in(storage_names, settings.keyframe_storage);
         told["pre_attention"] = settings.injection.pre_attention;
         told["post_attention"] = settings.injection.post_attention;
-        told["adain"] = !settings.normalization.enabled                               ? "none"
-                        : settings.normalization.statistics == adain_statistics::mean ? "means"
-                                                                                      : "means and deviations";
+    }
+    told["normalization"] = settings.normalization.enabled
+                                ? name_in(consistency_options::statistics_names, settings.normalization.statistics)
+                                : "none";
+    told["normalization_target"] = name_in(consistency_options::target_names, settings.normalization.target);
+    told["consensus"] = settings.consensus.enabled;
+    if (settings.consensus.enabled) {
+        told["consensus_window"] = {settings.consensus.window_begin, settings.consensus.window_end};
+        told["consensus_sources"] = std::min<std::size_t>(settings.consensus.sources.count, images.shape()[0]);
     }
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -135,6 +142,9 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     json["coverage"] = nlohmann::ordered_json::object();
     for (auto const& [grid, count] : report.coverage) {
         json["coverage"][std::to_string(grid.height) + "x" + std::to_string(grid.width)] = count.share();
+    }
+    if (report.consensus.on_objects > 0) {
+        json["consensus_coverage"] = report.consensus.share();
     }
     pixel_correspondence const pixels(to_uv_view(source.guidance.uv), source.image);
     json["correspondence_error"] = nlohmann::ordered_json::object();

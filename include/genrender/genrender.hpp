@@ -27,6 +27,7 @@
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/maps/canonical_maps.hpp>
 #include <genrender/maps/cell_extents.hpp>
+#include <genrender/maps/cell_shares.hpp>
 #include <genrender/maps/depth_maps.hpp>
 #include <genrender/maps/uv_convention.hpp>
 #include <genrender/maps/uv_maps.hpp>
@@ -106,6 +107,8 @@
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/blending/blend_plans.hpp>
 #include <genrender/blending/call_rows.hpp>
+#include <genrender/blending/consensus.hpp>
+#include <genrender/blending/consensus_settings.hpp>
 #include <genrender/blending/mix_rows.hpp>
 #include <genrender/blending/mix_rows_keeping_variance.hpp>
 #include <genrender/blending/padded_rows.hpp>
@@ -126,9 +129,15 @@
 #include <genrender/injection/pre_attention.hpp>
 
 #include <genrender/normalization/adain.hpp>
+#include <genrender/normalization/adain_settings.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
 #include <genrender/normalization/latent_normalizer.hpp>
+#include <genrender/normalization/low_band.hpp>
+#include <genrender/normalization/low_band_latents.hpp>
+#include <genrender/normalization/normalization_target.hpp>
+#include <genrender/normalization/supported_gain.hpp>
 
+#include <genrender/pipeline/estimate_consensus.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/memory_plan.hpp>
 #include <genrender/pipeline/pass_latents.hpp>

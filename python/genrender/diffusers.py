@@ -162,8 +162,9 @@ def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, s
 
     `maps` are genrender.Maps with depth. Of `keyframes` None is 4, or all frames if these are fewer; 0 renders every frame by
     itself, as the pipeline does. `alpha` is a number or a function of step and name of the module;
-    `normalization` is mean, mean_and_deviation or None. `length_correction` is the power of ln(keys) / ln(own keys) on the
-    logits where frames attend to others: 1 is the length-corrected temperature. Raises ValueError for what does not fit.
+    `normalization` is mean, mean_and_supported_deviation, low_band, mean_and_deviation (the paper's) or None. `length_correction`
+    is the power of ln(keys) / ln(own keys) on the logits where frames attend to others: 1 is the length-corrected temperature.
+    Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
     for name, value, least in (("keyframes", keyframes, 0), ("frames_per_call", frames_per_call, 1)):

@@ -227,9 +227,11 @@ std::vector<std::uint32_t> keyframes(std::size_t count, std::size_t frames, std:
 std::vector<std::size_t> normalize(nb::ndarray<float, nb::ndim<4>, nb::c_contig, nb::device::cpu> const& z,
                                    input<std::uint8_t, 3> const& background, std::string const& statistics) {
     adain_settings<float> settings;
-    settings.statistics = named(
-        "normalize_latents", "statistics", statistics,
-        {std::pair("mean", adain_statistics::mean), {"mean_and_deviation", adain_statistics::mean_and_deviation}});
+    settings.statistics = named("normalize_latents", "statistics", statistics,
+                                {std::pair("mean", adain_statistics::mean),
+                                 {"mean_and_supported_deviation", adain_statistics::mean_and_supported_deviation},
+                                 {"low_band", adain_statistics::low_band},
+                                 {"mean_and_deviation", adain_statistics::mean_and_deviation}});
     return normalize_latents(view_of<float, 4>(z), view_of<std::uint8_t const, 3>(background), settings);
 }
 

@@ -9,9 +9,12 @@ using namespace genrender;
 TEST_SUITE("baselines/baseline_settings") {
     TEST_CASE_TEMPLATE("[GR sec. 4: Baselines] every frame starts from the same noise and latents are not normalised",
                        Real, float, double) {
-        auto const baseline = baseline_settings(render_settings<Real>{});
+        render_settings<Real> settings;
+        settings.consensus.enabled = true;
+        auto const baseline = baseline_settings(settings);
         CHECK(baseline.noise.kind == noise_kind::fixed);
         CHECK(!baseline.normalization.enabled);
+        CHECK(!baseline.consensus.enabled);
     }
     TEST_CASE("noise of another kind can be asked for") {
         CHECK(baseline_settings(render_settings<float>{}, noise_kind::uv).noise.kind == noise_kind::uv);

@@ -6,6 +6,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cstddef>
+#include <vector>
+
 using namespace genrender;
 
 TEST_SUITE("correspondence/correspondence_set") {
@@ -23,6 +26,35 @@ TEST_SUITE("correspondence/correspondence_set") {
         CHECK(maps.at({1, 8}).width == 8);
         CHECK_THROWS_WITH_AS(maps.at({2, 2}), "correspondence_set: grid is [2, 2], expected one of the 2 grids added",
                              value_error);
+    }
+    TEST_CASE("the map of the latents is found and not listed unless features have its grid") {
+        correspondence_set<testing::shifted_strip> maps;
+        std::size_t made = 0;
+        auto const make = [&](grid_extents grid) {
+            ++made;
+            return testing::shifted_strip{2, grid.width};
+        };
+        auto const listed = [&] {
+            std::vector<std::size_t> widths;
+            for (auto const& [grid, map] : maps) {
+                widths.push_back(map.width);
+            }
+            return widths;
+        };
+        maps.add({1, 4}, make);
+        maps.add_unlisted({1, 8}, make);
+        maps.add_unlisted({1, 8}, make);
+        maps.add_unlisted({1, 4}, make);
+        CHECK(made == 2);
+        CHECK(listed() == std::vector<std::size_t>{4});
+        CHECK(maps.at({1, 8}).width == 8);
+        CHECK(maps.at({1, 4}).width == 4);
+        CHECK(maps.tokens_on_objects({1, 8}, {1}) == 8);
+        maps.add({1, 8}, make);
+        CHECK(made == 2);
+        CHECK(listed() == std::vector<std::size_t>{4, 8});
+        CHECK(maps.at({1, 8}).width == 8);
+        CHECK(maps.tokens_on_objects({1, 8}, {1}) == 8);
     }
     TEST_CASE("the tokens of a frame that show an object are counted once") {
         struct counting_strip : testing::shifted_strip {

@@ -197,7 +197,7 @@ if(EXISTS ${ROOT}/docs/program.md)
 endif()
 set(options "")
 foreach(source IN ITEMS examples/support/render_options.hpp examples/support/correspondence_options.hpp
-        examples/support/injection_options.hpp)
+        examples/support/consistency_options.hpp examples/support/injection_options.hpp)
     if(EXISTS ${ROOT}/${source})
         file(READ ${ROOT}/${source} text)
         string(REGEX MATCHALL "\"--[a-z-]+[\",]" of_source "${text}") # An option's other names follow a comma.

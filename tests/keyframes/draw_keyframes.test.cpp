@@ -35,6 +35,16 @@ keyframe_settings stratified(std::size_t m, std::uint64_t seed = 0) {
 } // namespace
 
 TEST_SUITE("keyframes/draw_keyframes") {
+    TEST_CASE("another stream draws other frames by the same rules") {
+        std::size_t same = 0;
+        for (std::size_t step = 0; step < 50; ++step) {
+            auto const own = draw_keyframes(uniform(5), 40, step, random_stream::consensus_sources);
+            CHECK(own == draw_keyframes(uniform(5), 40, step, random_stream::consensus_sources));
+            CHECK(std::set<frame_index>(own.begin(), own.end()).size() == 5);
+            same += own == draw_keyframes(uniform(5), 40, step) ? 1U : 0U;
+        }
+        CHECK(same < 3);
+    }
     TEST_CASE("[GR alg. 1] a draw is a function of seed and step") {
         for (auto const& settings : {uniform(5, 3), stratified(5, 3)}) {
             auto const later = drawn(settings, 40, 17);

@@ -348,6 +348,153 @@ TEST_SUITE("normalization/adain") {
         }
     }
 
+    TEST_CASE_TEMPLATE("with all frames as the target every mean becomes that of all backgrounds", Real, float,
+                       double) {
+        auto [z, background] = world<Real>();
+        adain_settings<Real> settings;
+        settings.target = adain_target::all_frames;
+        std::vector<double> expected(channels);
+        double pixels = 0;
+        for (std::size_t i = 0; i < frames; ++i) {
+            auto const own = background_of(z, background, i);
+            pixels += static_cast<double>(own.pixels);
+            for (std::size_t c = 0; c < channels; ++c) {
+                expected[c] += static_cast<double>(own.pixels) * static_cast<double>(own.mean[c]);
+            }
+        }
+        auto const before = z;
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings).empty());
+        CHECK(!frame_is_equal(z, before, 0));
+        for (std::size_t i = 0; i < frames; ++i) {
+            auto const own = background_of(z, background, i);
+            for (std::size_t c = 0; c < channels; ++c) {
+                CHECK(own.mean[c] == doctest::Approx(expected[c] / pixels).epsilon(1e-5));
+            }
+        }
+    }
+
+    TEST_CASE("a first frame without background is none where the target is the first that has enough") {
+        auto [z, background] = world<double>();
+        fill(background, 0, 0);
+        auto const before = z;
+        auto const target = background_of(z, background, 1);
+        adain_settings<double> settings;
+        settings.target = adain_target::first_with_background;
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings) == std::vector<std::size_t>{0});
+        CHECK(frame_is_equal(z, before, 0));
+        CHECK(frame_is_equal(z, before, 1));
+        for (std::size_t c = 0; c < channels; ++c) {
+            CHECK(background_of(z, background, 3).mean[c] == doctest::Approx(target.mean[c]));
+        }
+    }
+
+    TEST_CASE("with all frames as the target all pixels of all frames stand in for a missing background") {
+        auto [z, background] = world<double>();
+        auto everywhere = background;
+        std::fill(everywhere.data(), everywhere.data() + everywhere.size(), std::uint8_t{1});
+        adain_settings<double> settings;
+        settings.target = adain_target::all_frames;
+        auto expected = z;
+        normalize_latents(expected.view(), std::as_const(everywhere).view(), settings);
+        auto without = z;
+        fill(background, 2, 0);
+        CHECK(normalize_latents(without.view(), std::as_const(background).view(), settings) ==
+              std::vector<std::size_t>{2});
+        CHECK(frame_is_equal(without, z, 2));
+        settings.fallback = without_background::all_pixels;
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings).empty());
+        CHECK(frame_is_equal(z, expected, 2));
+        CHECK(frame_is_equal(z, without, 1));
+    }
+
+    TEST_CASE_TEMPLATE("deviations are made alike as far as their pixels support them", Real, float, double) {
+        auto [z, background] = world<Real>();
+        auto const before = z;
+        adain_settings<Real> settings;
+        settings.statistics = adain_statistics::mean_and_supported_deviation;
+        settings.most_gain = 3;
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings).empty());
+        auto const first = background_of(before, background, 0);
+        bool is_scaled = false;
+        for (std::size_t i = 1; i < frames; ++i) {
+            auto const was = background_of(before, background, i);
+            auto const own = background_of(z, background, i);
+            for (std::size_t c = 0; c < channels; ++c) {
+                auto const gain = static_cast<double>(supported_gain(was.deviation[c], was.pixels, first.deviation[c],
+                                                                     first.pixels, settings.standard_errors, Real(3)));
+                is_scaled = is_scaled || std::abs(std::log(gain)) > 0.1;
+                CHECK(own.mean[c] == doctest::Approx(static_cast<double>(first.mean[c])).epsilon(1e-5));
+                CHECK(own.deviation[c] == doctest::Approx(gain * static_cast<double>(was.deviation[c])).epsilon(1e-4));
+            }
+        }
+        CHECK(is_scaled);
+    }
+
+    TEST_CASE("low bands are chosen by the statistics") {
+        auto [z, background] = world<double>();
+        auto expected = z;
+        adain_settings<double> settings;
+        settings.statistics = adain_statistics::low_band;
+        auto const skipped = normalize_low_bands(expected.view(), std::as_const(background).view(), settings);
+        CHECK(normalize_latents(z.view(), std::as_const(background).view(), settings) == skipped);
+        CHECK(largest_difference(z, expected) == 0);
+    }
+
+    TEST_CASE("a ball that enters after two empty frames is not burnt but by the paper's literal form") {
+        // The network was told of nothing in the empty frames and filled them with what it liked, dark and full of
+        // contrast; then there is a ball on a flat sky.
+        constexpr std::size_t side = 16;
+        stack<double, 4> z({4, 1, side, side});
+        mask_stack background({4, side, side});
+        auto const noise = random_stack<double, 4>({4, 1, side, side}, 9);
+        for (std::size_t e = 0; e < z.size(); ++e) {
+            auto const i = e / (side * side);
+            auto const row = static_cast<double>(e / side % side) - 7.5;
+            auto const column = static_cast<double>(e % side) - 7.5;
+            auto const is_ball = i >= 2 && row * row + column * column < 30;
+            background.data()[e] = is_ball ? 0 : 1;
+            z.data()[e] = i < 2 ? -0.3 + 0.8 * noise.data()[e] : is_ball ? -0.2 + 0.3 * noise.data()[e] : 0.6;
+        }
+        // How far the ball's darkest value falls, and how much its contrast grows.
+        auto const of_ball = [&](stack<double, 4> const& latents) {
+            double least = 0;
+            double most = -1e9;
+            for (std::size_t e = 2 * side * side; e < z.size(); ++e) {
+                if (background.data()[e] == 0) {
+                    least = std::min(least, latents.data()[e]);
+                    most = std::max(most, latents.data()[e]);
+                }
+            }
+            return std::pair(least, most - least);
+        };
+        auto const [darkest, contrast] = of_ball(z);
+        auto const after = [&](adain_settings<double> const& settings) {
+            auto changed = z;
+            CHECK(normalize_latents(changed.view(), std::as_const(background).view(), settings).empty());
+            auto const [dark, apart] = of_ball(changed);
+            return std::pair(darkest - dark, apart / contrast);
+        };
+        auto const burnt = after({.statistics = as_the_paper});
+        CHECK(burnt.first > 100);
+        CHECK(burnt.second > 100);
+        for (auto const target :
+             {adain_target::first_frame, adain_target::all_frames, adain_target::first_with_background}) {
+            adain_settings<double> settings;
+            settings.target = target;
+            auto const means = after(settings);
+            CHECK(means.first < 1.0); // no more than the sky's own shift, 0.9
+            CHECK(means.second == doctest::Approx(1));
+            settings.statistics = adain_statistics::mean_and_supported_deviation;
+            auto const supported = after(settings);
+            CHECK(supported.second <= 1.1 + 1e-9);
+            CHECK(supported.first < 1.2);
+            settings.statistics = adain_statistics::low_band;
+            auto const bands = after(settings);
+            CHECK(bands.first < 1.5);
+            CHECK(bands.second < 1.5);
+        }
+    }
+
     TEST_CASE("no frame and one frame are no work") {
         stack<float, 4> none({0, 3, 6, 8});
         mask_stack const no_mask({0, 6, 8});

@@ -125,6 +125,40 @@ TEST_SUITE("pipeline/memory_plan") {
         settings.injection.counts_points = false;
         CHECK(plan_memory(run, settings).bytes.blend_plans == 0);
     }
+    TEST_CASE("a consensus is counted by hand and has no bytes where there is none") {
+        auto settings = two_steps();
+        auto run = described_run();
+        auto const without = plan_memory(run, settings);
+        CHECK(without.bytes.consensus == 0);
+        CHECK(without.work.consensus_bytes == 0);
+        settings.consensus.enabled = true;
+        settings.consensus.sources = {
+            .count = 3, .drawing = keyframe_drawing::fixed, .frames = {{2}, {5}, {7}}, .seed = 0};
+        settings.correspondence.kind = correspondence_kind::texel_grid;
+        run.calls_at_once = 2;
+        auto const plan = plan_memory(run, settings);
+        // Three estimates of 96 values, and two frames under way with a plan of 25 offsets, room for 72 entries and averages.
+        CHECK(plan.bytes.consensus == 4 * (3 * 96 + 2 * (25 + 2 * 128 + 96)));
+        CHECK(plan.bytes.background == 2 * 20 * 24); // the mask and the shares of cells
+        // Both steps begin within the window: at 0 and at a half.
+        CHECK(plan.work.consensus_matches == 2 * 20 * 3 * 24);
+        CHECK(plan.work.consensus_bytes == 2 * 96 * 4.0 * (2 * 3 + 20 * (2 * 3 + 5)));
+        settings.consensus.window_end = 0.5;
+        CHECK(plan_memory(run, settings).work.consensus_matches == 20 * 3 * 24);
+        settings.consensus.fades_at_silhouettes = false;
+        CHECK(plan_memory(run, settings).bytes.background == 20 * 24);
+        // By footprints there is a map of the latents' grid, too.
+        settings.correspondence.kind = correspondence_kind::footprint;
+        CHECK(plan_memory(run, settings).bytes.correspondence ==
+              without.bytes.correspondence + footprint_map<2>::expected_bytes(20, 24));
+        CHECK(plan_memory(run, settings).bytes.matching > without.bytes.matching);
+        // With all frames as sources it grows with their number.
+        settings.consensus.sources = {.count = 100, .drawing = keyframe_drawing::uniform, .frames = {}, .seed = 0};
+        auto const over_all = plan_memory(run, settings).bytes.consensus;
+        run.frames = 40;
+        // Twenty more estimates, and twenty more entries a cell in two plans.
+        CHECK(plan_memory(run, settings).bytes.consensus == over_all + 20 * 4 * (96 + 2 * 2 * 24));
+    }
     TEST_CASE("[GR eq. 3, 5] FLOPs of attention are counted by hand") {
         auto settings = two_steps();
         auto const run = described_run();
@@ -191,5 +225,21 @@ TEST_SUITE("pipeline/memory_plan") {
         settings = two_steps();
         settings.window_end = 0;
         CHECK(compare(24, settings).error() < 0.05);
+    }
+    TEST_CASE("with a consensus the peak is within 5 % of the heap's as well") {
+        if (!counted_memory::is_counted) {
+            MESSAGE("the heap is not counted here");
+            return;
+        }
+        auto settings = two_steps();
+        settings.consensus.enabled = true;
+        for (auto const alone : {false, true}) { // after the passes of a method, or as the largest part of a run
+            settings.window_end = alone ? 0.0F : 1.0F;
+            for (std::size_t const frames : {24U, 240U}) {
+                auto const both = compare(frames, settings);
+                MESSAGE("planned ", both.plan.bytes.peak, " bytes, measured ", both.measured);
+                CHECK(both.error() < 0.05);
+            }
+        }
     }
 }

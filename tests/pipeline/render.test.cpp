@@ -5,6 +5,9 @@
 #include <genrender/testing/analytic_denoiser.hpp>
 #include "../support/random_scene.hpp"
 
+#include <genrender/baselines/baseline_settings.hpp>
+#include <genrender/baselines/per_frame.hpp>
+#include <genrender/baselines/tokenflow.hpp>
 #include <genrender/evaluation/correspondence_error.hpp>
 
 #include <doctest/doctest.h>
@@ -163,6 +166,82 @@ TEST_SUITE("pipeline/render") {
                 CHECK(difference(results.back(), results[other]) > 1e-6);
             }
         }
+    }
+    TEST_CASE("a consensus changes what its settings say and nothing where they say nothing") {
+        auto const phi = with_attention();
+        auto const with = [&](auto&& change, std::size_t threads = 1) {
+            auto settings = few_steps();
+            settings.consensus.enabled = true;
+            change(settings.consensus);
+            return run(phi, settings, threads);
+        };
+        auto const none = run(phi, few_steps());
+        auto const full = with([](auto&) {});
+        CHECK(difference(full, none) > 1e-3);
+        CHECK(difference(full, with([](auto&) {}, 2)) == 0);
+        CHECK(difference(full, with([](auto&) {}, 5)) == 0);
+        CHECK(difference(none, with([](auto& c) { c.window_end = 0; })) == 0);
+        CHECK(difference(none, with([](auto& c) { c.strength = [](std::size_t) { return 0.0; }; })) == 0);
+        CHECK(difference(full, with([](auto& c) { c.window_end = 1; })) > 1e-6);
+        CHECK(difference(full, with([](auto& c) { c.window_begin = 0.25; })) > 1e-6);
+        CHECK(difference(full, with([](auto& c) { c.strength = [](std::size_t) { return 0.5; }; })) > 1e-6);
+        CHECK(difference(full, with([](auto& c) { c.sources.count = 2; })) > 1e-6);
+        CHECK(difference(full, with([](auto& c) { c.first_fill_share = 1; })) > 1e-6);
+        CHECK(difference(full, with([](auto& c) { c.average = texel_average::plain; })) > 1e-9);
+        CHECK(difference(full, with([](auto& c) { c.most_gain = 1; })) > 1e-6);
+        CHECK(difference(full, with([](auto& c) { c.fades_at_silhouettes = false; })) > 1e-6);
+        auto const of_seed = [&](std::uint64_t seed) {
+            return with([&](auto& c) {
+                c.sources.count = 2;
+                c.sources.seed = seed;
+            });
+        };
+        CHECK(difference(of_seed(0), of_seed(1)) > 1e-6);
+    }
+    TEST_CASE(
+        "a consensus makes corresponding pixels of every method agree better and needs no site of the latents' grid") {
+        auto const maps = testing::random_scene(40, 12, {64, 64}, 3);
+        testing::analytic_denoiser<double> const phi{.grid = {16, 16}, .attention = 0.3};
+        texel_grid const pixels(to_uv_view(maps), {16, 16});
+        auto const compare = [&](std::string const& name, auto const& render_with) {
+            auto settings = few_steps();
+            settings.noise.kind = noise_kind::independent;
+            auto const without = render_with(settings, false);
+            auto const with = render_with(settings, true);
+            auto const before = *correspondence_error(to_view(without.z), pixels, 5);
+            auto const after = *correspondence_error(to_view(with.z), pixels, 5);
+            MESSAGE(name, ": error ", before, " without and ", after, " with a consensus, which covers ",
+                    with.report.consensus.share());
+            CHECK(after < 0.8 * before);
+            CHECK(without.report.consensus.on_objects == 0);
+            CHECK(with.report.consensus.share() > 0.99); // every frame is a source here
+            CHECK(with.report.consensus_seconds > 0);
+        };
+        compare("per frame", [&](auto settings, bool has_consensus) {
+            settings = per_frame(settings); // compiles no map of its own
+            settings.consensus.enabled = has_consensus;
+            return render(phi, to_uv_view(maps), {.settings = settings});
+        });
+        compare("tokenflow", [&](auto settings, bool has_consensus) {
+            settings = baseline_settings(settings, noise_kind::independent);
+            settings.consensus.enabled = has_consensus;
+            return render<tokenflow>(phi, to_uv_view(maps), {.settings = settings});
+        });
+        compare("generative rendering", [&](auto settings, bool has_consensus) {
+            settings.consensus.enabled = has_consensus;
+            return render(phi, to_uv_view(maps), {.settings = settings});
+        });
+    }
+    TEST_CASE("settings of consensus and normalisation that say nothing are refused before anything runs") {
+        auto settings = few_steps();
+        settings.consensus.most_gain = 0;
+        CHECK_THROWS_WITH_AS(run(with_attention(), settings),
+                             "render: settings.consensus.most_gain is 0.000000, expected a factor of at least 1",
+                             value_error);
+        settings = few_steps();
+        settings.normalization.band_levels = 0;
+        CHECK_THROWS_WITH_AS(run(with_attention(), settings), "render: settings.band_levels is 0, expected 1 to 12",
+                             value_error);
     }
     TEST_CASE("the default method may be named") {
         auto const phi = with_attention();

@@ -22,6 +22,21 @@ TEST_SUITE("pipeline/render_report") {
         CHECK(report.skipped_frames == std::set<std::size_t>{1, 3});
         CHECK(report.denoiser_seconds == doctest::Approx(3));
         CHECK(report.library_seconds == doctest::Approx(0.75));
+        CHECK(report.consensus_seconds == 0);
+    }
+
+    TEST_CASE("the consensus has coverage of its own and its seconds are the library's") {
+        render_report report;
+        report_writer writer(report);
+        writer.add_seconds(2, 0.5);
+        writer.add_consensus_coverage(40, 30);
+        writer.add_consensus_coverage(60, 20);
+        writer.add_consensus_seconds(0.25);
+        CHECK(report.consensus.share() == doctest::Approx(0.5));
+        CHECK(report.coverage.empty());
+        CHECK(report.consensus_seconds == doctest::Approx(0.25));
+        CHECK(report.library_seconds == doctest::Approx(0.75));
+        CHECK(report.denoiser_seconds == doctest::Approx(2));
     }
 
     TEST_CASE("a report of no run tells of nothing") {

@@ -19,6 +19,7 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(settings.first_fill_share == Real(0.5));
         CHECK(settings.injection.keeps_own_copy);
         CHECK(!settings.normalization.on_noisy_latents);
+        CHECK(!settings.consensus.enabled);
         CHECK(settings.normalization.statistics == adain_statistics::mean); // the one default that is not the paper's
     }
     TEST_CASE("a window holds its first step and not its last") {

@@ -137,6 +137,27 @@ TEST_SUITE("pipeline/sequence_denoiser") {
         run.estimate(z, 8);
         CHECK(greatest_difference(run.estimate(z, 1), once.data()) == 0);
     }
+    TEST_CASE("a consensus comes after the method and before normalisation") {
+        small_run<double> run;
+        auto const z = run.noise();
+        auto expected = run.estimate(z, 3);
+        run.settings.consensus.enabled = true;
+        run.settings.consensus.average = texel_average::plain;
+        sequence_run<testing::analytic_denoiser<double>, texel_grid> const alone{&run.phi, &run.grids, &run.settings,
+                                                                                 {},       &run.meter, &run.writer};
+        reach_consensus(alone, to_view(expected), {}, 1);
+        CHECK(greatest_difference(run.estimate(z, 3), expected.data()) == 0);
+        run.settings.normalization.enabled = true;
+        auto before = expected;
+        normalize_latents(to_view(expected), to_view(std::as_const(run.background)), run.settings.normalization);
+        CHECK(greatest_difference(before, expected.data()) > 1e-3);
+        CHECK(greatest_difference(run.estimate(z, 3), expected.data()) == 0);
+        // Step 2 of 3 lies behind the window.
+        run.settings.normalization.enabled = false;
+        auto const last = run.estimate(z, 1);
+        run.settings.consensus.enabled = false;
+        CHECK(greatest_difference(run.estimate(z, 1), last.data()) == 0);
+    }
     TEST_CASE("a noise level belongs to the step that begins at it") {
         std::vector<double> const sigmas{8, 3, 1, 0};
         std::span<double const> const all(sigmas);

@@ -112,6 +112,25 @@ refuses("texels of rest positions" 2 "--canonical: position has no texels" ${sce
     --canonical position --correspondence texels)
 refuses("quality of texels" 2 "--average: quality is not known" ${scene} --prompt dots ${out} --average quality
     --correspondence texels)
+refuses("a window without a consensus" 2 "--consensus-window: is of --consensus" ${scene} --prompt dots ${out}
+    --consensus-window 0 0.5)
+refuses("sources of no consensus" 2 "--consensus-sources: is of --consensus" ${scene} --prompt dots ${out}
+    --no-consensus --consensus-sources 4)
+refuses("a consensus and none" 2 "--no-consensus" ${scene} --prompt dots ${out} --consensus --no-consensus)
+refuses("a window that ends before it begins" 2 "--consensus-window: expected 0 <= BEGIN <= END <= 1" ${scene}
+    --prompt dots ${out} --consensus --consensus-window 0.5 0.25)
+refuses("a window that is no number" 2 "--consensus-window" ${scene} --prompt dots ${out} --consensus
+    --consensus-window 0 nan)
+refuses("a window of one end" 2 "--consensus-window" ${scene} --prompt dots ${out} --consensus --consensus-window 0.5)
+refuses("no sources" 2 "--consensus-sources: is 0, expected a number of frames or all" ${scene} --prompt dots ${out}
+    --consensus --consensus-sources 0)
+refuses("sources by another word" 2 "--consensus-sources: is some, expected" ${scene} --prompt dots ${out} --consensus
+    --consensus-sources some)
+refuses("a normalisation that is none" 2 "--normalization" ${scene} --prompt dots ${out} --normalization median)
+refuses("two normalisations" 2 "--normalization" ${scene} --prompt dots ${out} --normalization means --no-adain)
+refuses("a target that is none" 2 "--normalization-target" ${scene} --prompt dots ${out} --normalization-target last)
+refuses("a target of no normalisation" 2 "--normalization-target: there is no normalisation" ${scene} --prompt dots
+    ${out} --normalization none --normalization-target mean)
 refuses("an environment read by the nearest texel" 2 "--background: environment takes" ${scene} --prompt dots ${out}
     --background environment --noise-reading nearest)
 refuses("a plan of a baseline" 2 "--plan: is of generative_rendering" ${scene} ${out} --plan --method tokenflow)

@@ -9,11 +9,12 @@
 namespace genrender {
 
 /// The settings of a run turned to those of Pix2Video* and TokenFlow*: "the same noise to initialize each frame", or
-/// noise of another kind to compare methods alone, and no latent normalisation, which is the paper's own. Steps,
-/// schedule, sampler, seeds, keyframes and layers stay.
+/// noise of another kind to compare methods alone, and neither latent normalisation nor a consensus, which are not
+/// theirs. Steps, schedule, sampler, seeds, keyframes and layers stay.
 template <class Real>
 render_settings<Real> baseline_settings(render_settings<Real> settings, noise_kind noise = noise_kind::fixed) {
     settings.normalization.enabled = false;
+    settings.consensus.enabled = false;
     settings.noise.kind = noise;
     return settings;
 }

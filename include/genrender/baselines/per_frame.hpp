@@ -8,8 +8,8 @@
 
 namespace genrender {
 
-/// The settings of a run turned into the Per-Frame baseline: no keyframes, no injection, no latent normalisation, and
-/// noise of `noise` kind; steps, schedule, sampler and seeds stay.
+/// The settings of a run turned into the Per-Frame baseline: no keyframes, no injection, no consensus, no latent
+/// normalisation, and noise of `noise` kind; steps, schedule, sampler and seeds stay.
 template <class Real>
 render_settings<Real> per_frame(render_settings<Real> settings, noise_kind noise = noise_kind::independent) {
     settings.window_begin = 0;
@@ -17,6 +17,7 @@ render_settings<Real> per_frame(render_settings<Real> settings, noise_kind noise
     settings.injection.pre_attention = false;
     settings.injection.post_attention = false;
     settings.normalization.enabled = false;
+    settings.consensus.enabled = false;
     settings.noise.kind = noise;
     return settings;
 }

@@ -23,7 +23,8 @@ enum class random_stream : std::uint32_t {
     test,              ///< for tests
     user,              ///< for programs, which the library never draws from
     surface_noise,     ///< of the cells of surfaces
-    environment_noise  ///< of the cells of directions
+    environment_noise, ///< of the cells of directions
+    consensus_sources  ///< which frames a consensus is the mean of
 };
 
 namespace detail {

@@ -34,10 +34,11 @@ struct keyframe_settings {
 };
 
 /// KF = shuffle({i_1, ..., i_m}): different frames of an animation of `frame_count` frames, in an order drawn anew each
-/// `step` (but for held ones), which is also the order in which their features fill the texture. Every step can be asked for alone. Throws
-/// value_error if no keyframe is asked for, more than there are frames, or fixed ones repeat or do not exist.
+/// `step` (but for held ones), which is also the order in which their features fill the texture. Every step can be asked
+/// for alone; other frames than keyframes are drawn from a `stream` of their own. Throws value_error if no keyframe is
+/// asked for, more than there are frames, or fixed ones repeat or do not exist.
 inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings, std::size_t frame_count,
-                                               std::size_t step) {
+                                               std::size_t step, random_stream stream = random_stream::keyframes) {
     if (settings.drawing == keyframe_drawing::fixed) {
         require_value(!settings.frames.empty(), "draw_keyframes", "frames", "empty", "at least one keyframe");
         std::set<frame_index> seen;
@@ -52,7 +53,7 @@ inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings
                   ("1 to the animation's " + std::to_string(frame_count) + " frames").c_str());
     auto const draw_below = [&](std::size_t bound, std::uint32_t draw) {
         return uniform_below(
-            static_cast<std::uint32_t>(bound), settings.seed, random_stream::keyframes,
+            static_cast<std::uint32_t>(bound), settings.seed, stream,
             {static_cast<std::uint32_t>(settings.drawing == keyframe_drawing::held ? 0 : step), draw, 0});
     };
 

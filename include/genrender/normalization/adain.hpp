@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.4] Latent normalisation: AdaIN that gives every frame's background the statistics of the first frame's.
+// [GR sec. 3.4] Latent normalisation: AdaIN that gives every frame's background the statistics of one of them, or of all.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
@@ -7,7 +7,11 @@
 #include <genrender/core/instance.hpp>
 #include <genrender/core/strided_view.hpp>
 #include <genrender/core/vectors.hpp>
+#include <genrender/normalization/adain_settings.hpp>
 #include <genrender/normalization/channel_statistics.hpp>
+#include <genrender/normalization/low_band_latents.hpp>
+#include <genrender/normalization/normalization_target.hpp>
+#include <genrender/normalization/supported_gain.hpp>
 
 #include <algorithm>
 #include <array>
@@ -47,63 +51,52 @@ void adain(strided_view<Real, 3> z, channel_statistics<std::type_identity_t<Real
 
 } // namespace GENRENDER_UNIT
 
-/// What latent normalisation does to a frame with hardly any background.
-enum class without_background : std::uint8_t {
-    skip,      ///< leave the frame as it is and report it
-    all_pixels ///< take the statistics of all of its pixels, and of all pixels of the first frame
-};
-
-/// Which statistics latent normalisation makes alike.
-enum class adain_statistics : std::uint8_t {
-    mean,              ///< means alone
-    mean_and_deviation ///< the paper's: nearly flat backgrounds have no deviation to divide by, and burn or wash out
-};
-
-/// How latents are normalised.
-template <class Real>
-struct adain_settings {
-    bool enabled = true;                                  ///< whether latents are normalised at all
-    adain_statistics statistics = adain_statistics::mean; ///< what is made alike
-    /// Steps in which it runs: those whose share step / steps lies in [window_begin, window_end).
-    Real window_begin = 0;
-    Real window_end = 1;          ///< see window_begin
-    std::size_t least_pixels = 2; ///< background pixels below which `fallback` decides; at least 2
-    without_background fallback = without_background::skip; ///< what becomes of a frame with fewer background pixels
-    bool on_noisy_latents = false; ///< normalise z_{t-1} after the sampler's step instead of the clean estimates
-};
-
 namespace detail {
 
 /// Normalises frames by `rescale(i, from, to)`, called for each frame that changes, with what `statistics(i,
-/// of_all_pixels)` tells of a frame's background or of all of it. Returns the frames that were skipped.
+/// of_all_pixels)` tells of a frame's background or of all of it; a frame is asked for before it changes. Returns the
+/// frames that were skipped.
 template <class Real, class Statistics, class Rescale>
-std::vector<std::size_t> normalize_frames(std::size_t frames, adain_settings<Real> const& settings,
-                                          Statistics const& statistics, Rescale const& rescale) {
+std::vector<std::size_t> normalize_frames(strided_view<std::uint8_t const, 3> background,
+                                          adain_settings<Real> const& settings, Statistics const& statistics,
+                                          Rescale const& rescale) {
+    auto const frames = background.extent(0);
     auto const least = std::max<std::size_t>(settings.least_pixels, 2);
-    auto const rescale_to = [&](std::size_t i, channel_statistics<Real> from, channel_statistics<Real> const& to) {
-        if (settings.statistics == adain_statistics::mean) {
-            from.deviation = to.deviation;
+    auto const rescale_to = [&](std::size_t i, channel_statistics<Real> from, channel_statistics<Real> to) {
+        for (std::size_t c = 0; c < from.mean.size() && settings.statistics != adain_statistics::mean_and_deviation;
+             ++c) {
+            to.deviation[c] = settings.statistics == adain_statistics::mean
+                                  ? Real{1}
+                                  : supported_gain(from.deviation[c], from.pixels, to.deviation[c], to.pixels,
+                                                   settings.standard_errors, settings.most_gain);
+            from.deviation[c] = 1;
         }
         rescale(i, from, to);
     };
-    std::vector<std::size_t> skipped;
-    if (frames == 0) {
-        return skipped;
+    // The target is one frame, which stays as it is, or all, which are measured before one changes.
+    auto const target = target_frame(background, settings);
+    auto const falls_back = settings.fallback == without_background::all_pixels;
+    std::vector<channel_statistics<Real>> own_of_all;
+    std::vector<channel_statistics<Real>> whole_of_all;
+    for (std::size_t i = 0; i < frames && !target; ++i) {
+        own_of_all.push_back(statistics(i, false));
+        if (falls_back) {
+            whole_of_all.push_back(statistics(i, true));
+        }
     }
-    // Frame 0 stays as it is, so its statistics can be taken before the others change.
-    auto const first = statistics(0, false);
+    auto const to = target ? statistics(*target, false) : pooled_statistics(own_of_all, least);
+    std::vector<std::size_t> skipped;
     for (std::size_t i = 0; i < frames; ++i) {
-        auto const own = statistics(i, false);
-        if (own.pixels >= least && first.pixels >= least) {
-            if (i > 0) {
-                rescale_to(i, own, first);
+        auto const own = target ? statistics(i, false) : own_of_all[i];
+        if (own.pixels >= least && to.pixels >= least) {
+            if (target != i) {
+                rescale_to(i, own, to);
             }
-        } else if (settings.fallback == without_background::all_pixels) {
-            if (i > 0) {
-                rescale_to(i, statistics(i, true), statistics(0, true));
-            }
-        } else {
+        } else if (!falls_back) {
             skipped.push_back(i);
+        } else if (target != i && background.extent(1) * background.extent(2) >= 2) {
+            rescale_to(i, target ? statistics(i, true) : whole_of_all[i],
+                       target ? statistics(*target, true) : pooled_statistics(whole_of_all, 2));
         }
     }
     return skipped;
@@ -114,17 +107,24 @@ std::vector<std::size_t> normalize_frames(std::size_t frames, adain_settings<Rea
 inline namespace GENRENDER_UNIT {
 
 /// Normalises a sequence z [frames, channels, height, width] in place: each frame's statistics over its own
-/// `background` [frames, height, width], means and deviations or means alone, become those of frame 0 over its own.
-/// Returns the frames that were skipped for want of background (all of them if frame 0 has none). Throws shape_error if
-/// the mask does not fit.
+/// `background` [frames, height, width] become those of the settings' target over its own, by default means those of
+/// frame 0. Returns the frames that were skipped for want of background (all of them if the target has none). Throws
+/// shape_error if the mask does not fit, value_error for settings that say nothing.
 template <class Real>
 std::vector<std::size_t> normalize_latents(strided_view<Real, 4> z, strided_view<std::uint8_t const, 3> background,
                                            adain_settings<std::type_identity_t<Real>> const& settings = {}) {
     require_shape("normalize_latents", "background", background, {z.extent(0), z.extent(2), z.extent(3)});
+    require_adain_settings("normalize_latents", settings);
+    if (z.extent(0) == 0) {
+        return {};
+    }
+    if (settings.statistics == adain_statistics::low_band) {
+        return normalize_low_bands(z, background, settings);
+    }
     std::vector<std::uint8_t> const everywhere(z.extent(2) * z.extent(3), 1);
     strided_view<std::uint8_t const, 2> const all(everywhere.data(), {z.extent(2), z.extent(3)});
     return detail::normalize_frames(
-        z.extent(0), settings,
+        background, settings,
         [&](std::size_t i, bool of_all_pixels) {
             return masked_statistics(strided_view<Real const, 3>(z[i]), of_all_pixels ? all : background[i]);
         },

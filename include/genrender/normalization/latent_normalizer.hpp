@@ -60,7 +60,7 @@ private:
 };
 
 /// The same by what the engine lends for it: the background is uploaded once, and means and deviations alone leave the
-/// engine's memory.
+/// engine's memory, but for low bands, for which latents are downloaded and uploaded again.
 template <normalizing_lender Phi>
 class latent_normalizer<Phi> {
 public:
@@ -87,11 +87,21 @@ public:
         auto const channels = z.extents()[1];
         auto const pixels = z.extents()[2] * z.extents()[3];
         require_shape("latent_normalizer", "background", background_, {frames, z.extents()[2], z.extents()[3]});
+        require_adain_settings("latent_normalizer", settings);
+        std::vector<std::size_t> skipped;
+        if (frames == 0) {
+            return skipped;
+        }
+        if (settings.statistics == adain_statistics::low_band) {
+            z.on_host(
+                [&](strided_view<real_type, 4> view) { skipped = normalize_latents(view, background_, settings); });
+            return skipped;
+        }
         auto const of_background = statistics(z, uploaded(on_background_, false), pixels_);
         std::optional<std::vector<channel_statistics<real_type>>> of_all;
         rescaling by(frames, channels);
-        auto const skipped = detail::normalize_frames(
-            frames, settings,
+        skipped = detail::normalize_frames(
+            background_, settings,
             [&](std::size_t i, bool of_all_pixels) {
                 if (of_all_pixels && !of_all) {
                     of_all = statistics(z, uploaded(everywhere_, true), std::vector<std::size_t>(frames, pixels));

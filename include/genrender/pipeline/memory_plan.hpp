@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/error.hpp>
+#include <genrender/pipeline/estimate_consensus.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 #include <genrender/pipeline/run_description.hpp>
@@ -22,14 +23,15 @@ namespace genrender {
 struct planned_bytes {
     std::size_t maps = 0;           ///< UV or rest positions, object and coverage: the caller's, not in `peak`
     std::size_t latents = 0;        ///< z, clean estimates and what the sampler remembers
-    std::size_t background = 0;     ///< mask of latent normalisation
-    std::size_t correspondence = 0; ///< which pixel or texel stands for each token, at all feature resolutions
+    std::size_t background = 0;     ///< mask of latent normalisation, and shares of cells for a consensus
+    std::size_t correspondence = 0; ///< which pixel or texel stands for each token, at all resolutions
 
     std::size_t bank = 0;             ///< K_KF, V_KF and F_KF of all places that take part
     std::size_t residuals = 0;        ///< what the denoiser reuses of keyframes
     std::size_t keyframe_latents = 0; ///< z_KF and its estimate
     std::size_t matching = 0;         ///< the caches that find tokens fast, see footprint_map_settings
     std::size_t blend_plans = 0;      ///< of the calls under way
+    std::size_t consensus = 0;        ///< estimates of its sources, plans and averages of the frames under way
     std::size_t network = 0;          ///< in the calls under way, queries, keys and values included
 
     std::size_t peak = 0; ///< most that is held at once; less than the sum, for not all is alive at the same time
@@ -45,6 +47,8 @@ struct planned_work {
     double plain_attention_flops = 0; ///< the same if every frame were denoised by itself
     double projection_flops = 0;      ///< the network's own W^Q f, W^K f and W^V f, 6 N C^2
     double mixed_bytes = 0;           ///< read and written by eq. 6, at most
+    double consensus_bytes = 0;       ///< read and written by the consensus of clean estimates, at most
+    double consensus_matches = 0;     ///< latent cells that it looks up in source frames
     double noise_values = 0;          ///< values of N(0, 1) in the initial latents
     double normalized_bytes = 0;      ///< read and written by latent normalisation
 
@@ -128,6 +132,9 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     std::size_t with_keyframes = 0;
     std::size_t m = 0;
     std::set<frame_index> ever_keyframes;
+    std::size_t consensus_evaluations = 0;
+    std::size_t K = 0; // source frames of a consensus
+    std::set<frame_index> ever_sources;
     for (std::size_t step = 0; step < settings.steps; ++step) {
         auto const of_step = evaluations_at(settings.sampler, step);
         auto const drawn = method.keyframes(settings, run.frames, step);
@@ -135,6 +142,10 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
         with_keyframes += drawn.empty() ? 0 : of_step;
         m = std::max(m, drawn.size());
         ever_keyframes.insert(drawn.begin(), drawn.end());
+        auto const sources = consensus_sources(settings, run.frames, step);
+        consensus_evaluations += sources.empty() ? 0 : of_step;
+        K = std::max(K, sources.size());
+        ever_sources.insert(sources.begin(), sources.end());
     }
     work.denoised_frames = evaluations * run.frames + with_keyframes * m;
 
@@ -181,9 +192,14 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     auto const latent_bytes = run.latent_channels * run.latent_grid.size() * sizeof(Real);
     bytes.latents = detail::latent_stacks(settings.sampler) * run.frames * latent_bytes;
     bytes.maps = run.frames * run.map_grid.size() * (run.map_dimensions * sizeof(float) + 5);
-    bytes.background = run.frames * run.latent_grid.size();
+    auto const has_shares = K > 0 && settings.consensus.fades_at_silhouettes;
+    bytes.background = (has_shares ? 2 : 1) * run.frames * run.latent_grid.size();
     auto const by_texels = settings.correspondence.kind == correspondence_kind::texel_grid;
-    for (auto const& grid : grids) {
+    auto all_grids = grids;
+    if (K > 0) {
+        all_grids.insert(run.latent_grid);
+    }
+    for (auto const& grid : all_grids) {
         bytes.correspondence +=
             by_texels ? detail::texel_bytes(run, grid) : footprint_map<2>::expected_bytes(run.frames, grid.size());
     }
@@ -198,16 +214,33 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     bytes.residuals = settings.reuses_keyframes ? m * run.residual_bytes.value_or(0) : 0;
     std::size_t making = 0;
     auto const of_keyframes = settings.injection.pre_attention && settings.injection.counts_points ? m : 0;
-    for (auto const& grid : grids) {
-        if (!by_texels) {
+    auto const plan_bytes = [&](grid_extents grid, std::size_t frames_of_plan) {
+        auto const most = grid.size() * frames_of_plan;
+        auto const entries = by_texels ? detail::grown_capacity(most) : most + 1;
+        return (grid.size() + 1) * sizeof(std::uint32_t) + entries * (sizeof(std::uint32_t) + sizeof(Real));
+    };
+    for (auto const& grid : all_grids) {
+        auto const has_plans = grids.contains(grid);
+        auto const has_sources = K > 0 && grid == run.latent_grid;
+        if (!by_texels) { // One map, for both if both have the grid.
+            auto ever = has_plans ? ever_keyframes : std::set<frame_index>{};
+            ever.insert(ever_sources.begin(), has_sources ? ever_sources.end() : ever_sources.begin());
             auto const matching_of = run.map_dimensions == 3 ? detail::matching_of<3> : detail::matching_of<2>;
-            auto const matching = matching_of(run, settings.correspondence.footprint, grid, m, ever_keyframes.size());
+            auto const matching = matching_of(run, settings.correspondence.footprint, grid,
+                                              std::max(has_plans ? m : 0, has_sources ? K : 0), ever.size());
             bytes.matching += matching.cached;
             making = std::max(making, matching.making);
         }
-        auto const entries = by_texels ? detail::grown_capacity(grid.size() * m) : grid.size() * m + 1;
-        bytes.blend_plans +=
-            (at_once + of_keyframes) * ((grid.size() + 1) * sizeof(std::uint32_t) + entries * (sizeof(std::uint32_t) + sizeof(Real)));
+        bytes.blend_plans += has_plans ? (at_once + of_keyframes) * plan_bytes(grid, m) : 0;
+    }
+    if (K > 0) {
+        auto const lanes = std::min(std::max<std::size_t>(run.calls_at_once, 1), run.frames);
+        auto const cells = run.latent_grid.size();
+        auto const matches = K * token_matches::bytes_of(cells); // which a full cache does not keep
+        auto const is_kept = run.frames * ever_sources.size() * token_matches::bytes_of(cells) <=
+                             settings.correspondence.footprint.match_cache_bytes;
+        bytes.consensus = K * latent_bytes + lanes * (plan_bytes(run.latent_grid, K) + latent_bytes +
+                                                      (by_texels || is_kept ? 0 : matches) + making);
     }
     // Recorded features of the site that is running are counted in the bank. If they are copies of 16 bits, these are
     // made after attention, when a call holds less by about as much.
@@ -217,10 +250,16 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     bytes.network = std::max(keyframe_call, frames_call);
     auto const recording = m > 0 ? bytes.keyframe_latents + keyframe_call : 0;
     auto const injecting = bytes.blend_plans + std::max(frames_call, calls * making);
-    bytes.peak = bytes.latents + bytes.background + bytes.correspondence + bytes.matching + bytes.bank +
-                 bytes.residuals + std::max(recording, injecting);
+    auto const in_method = bytes.bank + bytes.residuals + std::max(recording, injecting);
+    bytes.peak =
+        bytes.latents + bytes.background + bytes.correspondence + bytes.matching + std::max(in_method, bytes.consensus);
 
     work.noise_values = frames * static_cast<double>(run.latent_channels * run.latent_grid.size());
+    // Sources are copied; a frame's averages read them and are written and read twice, for statistics and to move x0.
+    work.consensus_bytes = static_cast<double>(consensus_evaluations) * static_cast<double>(latent_bytes) *
+                           (2 * static_cast<double>(K) + frames * (2 * static_cast<double>(K) + 5));
+    work.consensus_matches = static_cast<double>(consensus_evaluations) * frames * static_cast<double>(K) *
+                             static_cast<double>(run.latent_grid.size());
     if (settings.normalization.enabled) { // statistics read, values read and written
         work.normalized_bytes = plain_evaluations * 3 * frames * static_cast<double>(latent_bytes);
     }

@@ -11,6 +11,7 @@
 #include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/maps/cell_extents.hpp>
+#include <genrender/maps/cell_shares.hpp>
 #include <genrender/pipeline/run_sampler.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/pipeline/shapes_of_run.hpp>
@@ -60,6 +61,8 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
                   "a finite number, 0 or more");
     require_kept_variance("render", settings.injection.variance);
     require_quality_settings("render", settings.quality);
+    require_consensus_settings("render", settings.consensus, settings.steps);
+    require_adain_settings("render", settings.normalization);
     require_value(settings.layers != nullptr, "render", "settings.layers", "empty", "a function");
     require_value(settings.alpha != nullptr, "render", "settings.alpha", "empty", "a function");
     evaluations(settings.sampler, settings.steps);
@@ -143,7 +146,8 @@ inline constexpr std::size_t dimensions_of = 2;
 template <canonical_maps Maps>
 inline constexpr std::size_t dimensions_of<Maps> = Maps::dimensions;
 
-/// Compiles what geometry decides, once for the animation: the correspondence maps of all sites that take part.
+/// Compiles what geometry decides, once for the animation: the correspondence maps of all sites that take part, and of
+/// the latents for a consensus.
 template <class Map, class Phi, class Method, class Real, class MakeMap>
 correspondence_set<Map> compile_maps(Phi const& phi, Method const& method, render_settings<Real> const& settings,
                                      MakeMap const& make_map) {
@@ -159,6 +163,9 @@ correspondence_set<Map> compile_maps(Phi const& phi, Method const& method, rende
             }
             maps.add(site.grid, make_map);
         }
+    }
+    if (uses_consensus(settings)) {
+        maps.add_unlisted(phi.latent_grid(), make_map);
     }
     return maps;
 }
@@ -239,6 +246,9 @@ render(Phi const& phi, Maps const& UV,
         result.z *= sigmas.front();
 
         auto const background = background_mask(UV, grid);
+        auto const shares = uses_consensus(settings) && settings.consensus.fades_at_silhouettes
+                                ? cell_shares(UV, grid)
+                                : tensor<std::uint8_t, 3>();
         auto const maps = detail::compile_maps<map_type>(phi, method, settings, [&](grid_extents extents) {
             if constexpr (std::is_void_v<Map>) {
                 if (!arguments.make_map) {
@@ -259,7 +269,7 @@ render(Phi const& phi, Maps const& UV,
         // for t = T, ..., 1: what the method does, for alg. 1 keyframes, features, blending and injection; normalisation
         progress_meter meter(settings.steps, total, arguments.observer);
         sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
-                                  report, method);
+                                  report, method, to_view(shares));
         result.is_cancelled = run_sampler<Real>(phi, D, result.z, sigmas, settings.sampler);
         return result;
     }

@@ -30,12 +30,15 @@ struct coverage_count {
 struct render_report {
     /// Coverage of the blend by feature resolution.
     std::map<grid_extents, coverage_count> coverage;
+    /// Coverage of the consensus of clean estimates: latent cells on objects, and those that some source frame sees.
+    coverage_count consensus;
     /// Frames that latent normalisation skipped in some step, for want of background.
     std::set<std::size_t> skipped_frames;
     /// Seconds by the clock on the wall in the denoiser, the attention that processors ask of it included.
     double denoiser_seconds = 0;
-    /// Seconds in the rest of the library: compiling geometry, noise, keyframes, blend plans, normalisation.
+    /// Seconds in the rest of the library: compiling geometry, noise, keyframes, blend plans, consensus, normalisation.
     double library_seconds = 0;
+    double consensus_seconds = 0; ///< of these in the consensus
     /// The vector target of the library's kernels when the run began.
     vector_target kernels = vector_target::baseline;
 };
@@ -53,6 +56,12 @@ public:
         count.on_objects += on_objects;
         count.covered += covered;
     }
+    /// Counts latent cells of a frame for the consensus: those that show an object, and those that its plan covers.
+    void add_consensus_coverage(std::size_t on_objects, std::size_t covered) {
+        std::lock_guard const lock(mutex_);
+        report_->consensus.on_objects += on_objects;
+        report_->consensus.covered += covered;
+    }
     /// Adds frames that normalisation skipped.
     void add_skipped(std::vector<std::size_t> const& frames) {
         std::lock_guard const lock(mutex_);
@@ -63,6 +72,12 @@ public:
         std::lock_guard const lock(mutex_);
         report_->denoiser_seconds += denoiser;
         report_->library_seconds += library;
+    }
+    /// Adds seconds in the consensus, which are the library's.
+    void add_consensus_seconds(double seconds) {
+        std::lock_guard const lock(mutex_);
+        report_->consensus_seconds += seconds;
+        report_->library_seconds += seconds;
     }
 
 private:

@@ -7,6 +7,7 @@
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/consensus_settings.hpp>
 #include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/injection/alpha_schedule.hpp>
 #include <genrender/injection/injection_settings.hpp>
@@ -41,6 +42,7 @@ struct render_settings {
     noise_settings noise;                   ///< sec. 3.3
     keyframe_settings keyframes;            ///< alg. 1: KF
     correspondence_settings correspondence; ///< sec. 3.2
+    consensus_settings<Real> consensus;     ///< of the clean estimates; not the paper's
     adain_settings<Real> normalization;     ///< sec. 3.4
 
     /// Sites and branches that take part in the injection. Like alpha it may be called from several threads at once.

@@ -6,6 +6,7 @@
 
 #include <genrender/core/finite.hpp>
 #include <genrender/normalization/latent_normalizer.hpp>
+#include <genrender/pipeline/estimate_consensus.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/pass_latents.hpp>
 #include <genrender/pipeline/sequence_passes.hpp>
@@ -32,7 +33,8 @@ std::size_t step_at(std::span<Real const> sigmas, std::type_identity_t<Real> sig
     return step;
 }
 
-/// D(z, sigma) of a whole animation: a method's estimates of all frames, normalised. Any sampler drives it; it keeps
+/// D(z, sigma) of a whole animation: a method's estimates of all frames, in consensus and normalised where settings say
+/// so. Any sampler drives it; it keeps
 /// nothing from one evaluation to the next, and what it draws depends on the seed and the noise level alone.
 template <denoiser Phi, correspondence_map Map,
           sequence_method<sequence_passes<Phi, Map>> Method = generative_rendering>
@@ -42,14 +44,15 @@ public:
     using features_type = typename Phi::features_type; ///< the engine's handle of features
     using latents_type = run_latents<Phi>;             ///< z and x0, in host memory or lent
 
-    /// `sigmas` are the run's noise levels; `background` [frames, height, width] of the latents. Everything but the
-    /// method is referred to and must outlive the sequence denoiser.
+    /// `sigmas` are the run's noise levels; `background` and `shares` [frames, height, width] of the latents, the latter
+    /// those of cell_shares for a consensus that fades at silhouettes, else nothing. Everything but the method is referred
+    /// to and must outlive the sequence denoiser.
     sequence_denoiser(Phi const& phi, correspondence_set<Map> const& maps,
                       strided_view<std::uint8_t const, 3> background, std::span<real_type const> sigmas,
                       render_settings<real_type> const& settings, any_loop loop, progress_meter& meter,
-                      report_writer& report, Method method = {})
-        : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, normalizer_(phi, background), sigmas_(sigmas),
-          method_(std::move(method)) {}
+                      report_writer& report, Method method = {}, strided_view<std::uint8_t const, 3> shares = {})
+        : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, normalizer_(phi, background), shares_(shares),
+          sigmas_(sigmas), method_(std::move(method)) {}
 
     /// The clean estimates of all frames of z [frames, channels, height, width] at noise level sigmas[step]; a second
     /// evaluation within a step, such as Heun's, is one of the step that begins at its level. Throws value_error if an
@@ -58,7 +61,9 @@ public:
         auto x0 = estimates_for(z);
         method_(sequence_passes<Phi, Map>(run_, x0, z, sigma, step));
         require_finite(x0, step);
-        // What else is to be done with the estimates of all frames stands here: on_host(x0, change) where no engine lends it.
+        if (has_consensus(*run_.settings, step)) { // In host memory: no engine lends it.
+            on_host(x0, [&](strided_view<real_type, 4> estimates) { reach_consensus(run_, estimates, shares_, step); });
+        }
         auto const& normalization = run_.settings->normalization;
         if (!normalization.on_noisy_latents) {
             normalize(x0, step);
@@ -116,6 +121,7 @@ private:
 
     sequence_run<Phi, Map> run_;
     latent_normalizer<Phi> normalizer_;
+    strided_view<std::uint8_t const, 3> shares_;
     std::span<real_type const> sigmas_;
     Method method_;
 };
