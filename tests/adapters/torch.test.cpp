@@ -273,6 +273,6 @@ TEST_SUITE("adapters/torch") {
         std::array const of_fewer{sparse_rows<float>{}, sparse_rows<float>{}, sparse_rows<float>{},
                                   sparse_rows<float>{}};
         CHECK(error_of([&] { both.call.mix(both.f, both.f, of_fewer, 0.5f); }) ==
-              "torch_attention_call::mix: rows is [0], expected [80]");
+              "mix_torch_rows: rows is [0], expected [80]");
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A network that export_network.py has exported, behind genrender: its operator for self-attention calls back.
-#include "../libtorch/denoiser.hpp"
+#include "../libtorch/conditioning.hpp"
 
 #include <genrender/pipeline/render.hpp>
 
@@ -16,7 +16,7 @@ using namespace genrender::examples;
 
 // docs:begin torchscript_registered
 /// What the operator does in the run that is under way on this thread.
-static thread_local self_attention const* running = nullptr;
+static thread_local torch_self_attention const* running = nullptr;
 
 TORCH_LIBRARY(genrender, library) {
     library.def("self_attention(Tensor f, Tensor query, Tensor key, Tensor value, int heads, str site) -> Tensor",
@@ -33,7 +33,7 @@ TORCH_LIBRARY(genrender, library) {
 static torch_network loaded(std::string const& path, at::Device device) {
     auto const module = torch::jit::load(path, device);
     return [=](at::Tensor const& z, double t, at::Tensor const& prompt, at::Tensor const& hints,
-               self_attention const& run) {
+               torch_self_attention const& run) {
         running = &run;
         auto const F = module.get_method("forward")({z, at::tensor(t, z.options()), prompt, hints}).toTensor();
         running = nullptr;
