@@ -17,13 +17,18 @@ using namespace genrender::examples;
 // docs:begin torchscript_registered
 /// What the operator does in the run that is under way on this thread.
 static thread_local torch_self_attention const* running = nullptr;
+struct running_now {
+    explicit running_now(torch_self_attention const& run) { running = &run; }
+    ~running_now() { running = nullptr; }
+};
 
 TORCH_LIBRARY(genrender, library) {
     library.def("self_attention(Tensor f, Tensor query, Tensor key, Tensor value, int heads, str site) -> Tensor",
                 [](at::Tensor const& f, at::Tensor const& Q, at::Tensor const& K, at::Tensor const& V,
                    std::int64_t heads, std::string const& site) {
                     if (running == nullptr) {
-                        throw std::logic_error("genrender::self_attention: runs by itself, expected torch_network");
+                        throw std::logic_error(
+                            "genrender::self_attention: runs outside of a torch_network, expected inside");
                     }
                     return (*running)(site, f, Q, K, V, heads);
                 });
@@ -34,10 +39,8 @@ static torch_network loaded(std::string const& path, at::Device device) {
     auto const module = torch::jit::load(path, device);
     return [=](at::Tensor const& z, double t, at::Tensor const& prompt, at::Tensor const& hints,
                torch_self_attention const& run) {
-        running = &run;
-        auto const F = module.get_method("forward")({z, at::tensor(t, z.options()), prompt, hints}).toTensor();
-        running = nullptr;
-        return F;
+        running_now const now(run);
+        return module.get_method("forward")({z, at::full({}, t, z.options()), prompt, hints}).toTensor();
     };
 }
 // docs:end

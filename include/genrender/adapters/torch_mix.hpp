@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR eq. 6] Mixing of tensors of LibTorch by a call's rows, and the place of a kernel of your own for a kind of device.
+// Eq. 6 on tensors of LibTorch by the rows of a call, and the place of a kernel of your own for a kind of device.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
