@@ -50,11 +50,11 @@ TEST_SUITE("adapters/torch_mix") {
     }
 
     TEST_CASE("a kernel of the device is used where it knows the scalars, and on no other device") {
-        CHECK(torch_mix_kernel_of(at::kCUDA).load() == nullptr);
+        CHECK(bool(torch_mix_kernel_of(at::kCUDA).load() == nullptr));
         {
             registered const kernel(minus_own);
             CHECK(at::equal(mix_torch_rows(two_tokens(), bank(), two_rows()), -two_tokens()));
-            CHECK(torch_mix_kernel_of(at::kCUDA).load() == nullptr);
+            CHECK(bool(torch_mix_kernel_of(at::kCUDA).load() == nullptr));
         }
         {
             registered const kernel(unknown);
