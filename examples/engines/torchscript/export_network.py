@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Exports UNet and ControlNet of a diffusers folder as one TorchScript network, F(z, t, prompt, hint), whose self-attention
-is the operator genrender::self_attention: whoever loads the file says what it does.
+is the operator genrender::self_attention: whoever loads the file says what it does. It runs on the device that it was traced
+on, cpu by default.
 
-    python3 export_network.py FOLDER NETWORK.pt
+    python3 export_network.py FOLDER NETWORK.pt [DEVICE]
 
 Exit code 77 where torch or diffusers is missing.
 """
@@ -58,23 +59,25 @@ class Network(torch.nn.Module):
 # docs:end
 
 
-def inputs(network, frames, size, seed):
+def inputs(network, frames, size, seed, device):
     """Random ones for latents of size x size."""
     torch.manual_seed(seed)
     unet, control = network.unet.config, network.control.config
     pixels = size * 2 ** (len(control.conditioning_embedding_out_channels) - 1)
-    return (torch.randn(frames, unet.in_channels, size, size), torch.tensor(437.5), torch.randn(1, 77, unet.cross_attention_dim),
+    made = (torch.randn(frames, unet.in_channels, size, size), torch.tensor(437.5), torch.randn(1, 77, unet.cross_attention_dim),
             torch.rand(frames, control.conditioning_channels, pixels, pixels))
+    return tuple(x.to(device) for x in made)
 
 
 @torch.inference_mode()
 def main():
-    network = Network(sys.argv[1]).eval()
+    device = sys.argv[3] if len(sys.argv) > 3 else "cpu"
+    network = Network(sys.argv[1]).eval().to(device)
     smallest = 2 ** len(network.unet.config.block_out_channels)
-    others = inputs(network, 3, 2 * smallest, seed=2)  # neither the frames nor the grid of those that are traced
+    others = inputs(network, 3, 2 * smallest, 2, device)  # neither the frames nor the grid of those that are traced
     expected = network(*others)
     network.replace_self_attention()
-    traced = torch.jit.trace(network, inputs(network, 2, smallest, seed=1))
+    traced = torch.jit.trace(network, inputs(network, 2, smallest, 1, device))
     apart = float((traced(*others) - expected).abs().max() / (expected.max() - expected.min()))
     if not apart < 1e-5:
         raise SystemExit(f"the exported network differs from diffusers' by {apart:g} of the range, expected at most 1e-5")
