@@ -7,7 +7,8 @@ if(GENRENDER_TORCH_CUDA)
         set(CMAKE_CUDA_ARCHITECTURES native)
     endif()
     add_library(torch_mix OBJECT ${CMAKE_CURRENT_LIST_DIR}/../gpu/torch_mix.cu)
-    set_target_properties(torch_mix PROPERTIES CUDA_STANDARD 20)
+    # CMake 3.25 does not know that newer compilers have C++20.
+    target_compile_options(torch_mix PRIVATE -std=c++20)
     target_link_libraries(torch_mix PRIVATE genrender::torch genrender::cuda)
 endif()
 
