@@ -363,11 +363,14 @@ genrender_component(c HEADERS
 
 genrender_adapter(torch PACKAGES Torch HEADERS
     adapters/torch.hpp
+    adapters/torch_denoiser.hpp
     adapters/torch_latents.hpp
+    adapters/torch_mix.hpp
     adapters/torch_plans.hpp)
 
 genrender_adapter(cuda HEADERS
-    adapters/cuda/mix_rows.cuh)
+    adapters/cuda/mix_rows.cuh
+    adapters/cuda/torch_mix.cuh)
 genrender_adapter(ggml PACKAGES ggml HEADERS
     adapters/ggml.hpp
     adapters/ggml_memory.hpp)

@@ -29,7 +29,8 @@ sh cmake/quickstart.sh WHAT
             engines into build/engines, compares their frames and prints one table, and what was skipped and why;
             LibTorch is that of the Python that GENRENDER_PEER_PYTHON names, where it has it
   gpu       on a machine with an NVIDIA GPU, in five minutes: the fused kernel of eq. 6 against the host's, its speed
-            against a copy's, and a whole run of LibTorch on the GPU against the processor's
+            against a copy's, and a whole run of LibTorch on the GPU, with that kernel, against the processor's and against
+            the same run in plain PyTorch on the GPU
   docs      the reference of every public name, from the comments above them (build/docs/html/index.html)
   packages  install the Debian packages that all of these need, and do no more
 
@@ -247,10 +248,13 @@ gpu() {
         say "$python has no PyTorch that sees the GPU (GENRENDER_PEER_PYTHON names another). Skipped: a whole run on the GPU"
         return
     fi
-    say "A whole run of LibTorch on the GPU, against the processor's"
-    # Convolutions of 10 bits, cuDNN's usual ones, are further from the processor's than the bound.
-    NVIDIA_TF32_OVERRIDE=0 GENRENDER_ENGINE_DEVICE=cuda cmake -D BUILD=build/engines/clients_gpu -D ENGINES=libtorch -D "PYTHON=$python" \
+    say "A whole run of LibTorch on the GPU, against the library's own network on the processor"
+    # Products of 10 bits, cuDNN's usual ones, are further from the processor's than the bound.
+    export NVIDIA_TF32_OVERRIDE=0 GENRENDER_ENGINE_DEVICE=cuda CUDACXX="$nvcc"
+    cmake -D BUILD=build/engines/clients_gpu -D "ENGINES=libtorch;torchscript" -D "PYTHON=$python" \
         -D OPTIONS=-DGENRENDER_TORCH_CUDA=ON -P examples/engines/table.cmake
+    say "A whole run on the GPU, against the same in plain PyTorch there"
+    build/engines/clients_gpu/libtorch/whole_run 64 128
 }
 
 docs() {

@@ -14,4 +14,4 @@ target_compile_options(engine_flags INTERFACE
 add_library(engine_comparison OBJECT ${CMAKE_CURRENT_LIST_DIR}/comparison.cpp)
 target_link_libraries(engine_comparison PUBLIC genrender::genrender genrender::scene genrender::reference engine_flags)
 target_compile_definitions(engine_comparison PRIVATE
-    GENRENDER_REFERENCE_DENOISER="${CMAKE_CURRENT_LIST_DIR}/../reference_denoiser")
+    GENRENDER_MINIATURE_WEIGHTS="${CMAKE_CURRENT_LIST_DIR}/../miniature/weights")

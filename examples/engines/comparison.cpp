@@ -4,8 +4,9 @@
 
 #include "../scenes/camera_rotation.hpp"
 
-#include <genrender/reference/reference_network.hpp>
+#include <genrender/reference/pipeline_files.hpp>
 #include <genrender/reference/safetensors.hpp>
+#include <genrender/reference/stable_diffusion.hpp>
 #include <genrender/scene/rasterizer.hpp>
 
 #include <algorithm>
@@ -28,26 +29,6 @@ named_tensors tensors_of(std::filesystem::path const& folder) {
     return tensors;
 }
 
-/// A camera that goes around a still life, in pictures of `size` pixels a side.
-engine_case case_of(std::filesystem::path const& folder, std::size_t size) {
-    constexpr std::size_t frames = 8;
-    constexpr std::size_t map_pixels = 4; // along a pixel of a picture
-    auto const guidance = rasterize(scenes::camera_rotation(frames), {map_pixels * size, map_pixels * size});
-    auto const inverse_depth = cell_means(sequence_inverse_depth(guidance.depth), {size, size});
-    auto const weights = reference::reference_weights<float>::from_folder(folder);
-    engine_case run{weights.config,
-                    tensors_of(folder / "unet"),
-                    tensors_of(folder / "controlnet"),
-                    weights.conditioning(to_view(inverse_depth), "red stripes"),
-                    guidance.uv,
-                    {}};
-    run.settings.steps = 4;
-    run.settings.keyframes.count = 3;
-    run.settings.frames_per_call = 3;
-    run.settings.noise.seed = 5;
-    return run;
-}
-
 /// Seconds of the processor's time, which other programs of the machine do not lengthen.
 double seconds_of(std::function<void()> const& work) {
     auto const start = std::clock();
@@ -55,9 +36,35 @@ double seconds_of(std::function<void()> const& work) {
     return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-/// The greatest difference of two stacks, in parts of the range of the second.
+} // namespace
+
+engine_case case_of_size(std::size_t size) {
+    constexpr std::size_t frames = 8;
+    constexpr std::size_t map_pixels = 4; // along a pixel of a picture
+    std::filesystem::path const folder = GENRENDER_MINIATURE_WEIGHTS;
+    auto const guidance = rasterize(scenes::camera_rotation(frames), {map_pixels * size, map_pixels * size});
+    auto const inverse_depth = cell_means(sequence_inverse_depth(guidance.depth), {size, size});
+    reference::stable_diffusion<float> const pipeline{reference::pipeline_files(folder)};
+    engine_case run{folder,
+                    pipeline.config(),
+                    tensors_of(folder / "unet"),
+                    tensors_of(folder / "controlnet"),
+                    pipeline.conditioning(to_view(inverse_depth), {.text = "a red ball on a green checkered ground",
+                                                                   .negative = "at night",
+                                                                   .guidance_scale = 3}),
+                    guidance.uv,
+                    {}};
+    run.settings.steps = 4;
+    run.settings.sigma_min = static_cast<float>(pipeline.schedule().sigma_min());
+    run.settings.sigma_max = static_cast<float>(pipeline.schedule().sigma_max());
+    run.settings.keyframes.count = 3;
+    run.settings.frames_per_call = 3;
+    run.settings.noise.seed = 5;
+    return run;
+}
+
 double difference(latents<float> const& z, latents<float> const& reference) {
-    require_extents("compare_engine", "z", z.shape(), reference.shape());
+    require_extents("difference", "z", z.shape(), reference.shape());
     double greatest = 0;
     for (std::size_t i = 0; i < z.size(); ++i) {
         auto const apart = std::abs(static_cast<double>(z.data()[i]) - static_cast<double>(reference.data()[i]));
@@ -67,20 +74,17 @@ double difference(latents<float> const& z, latents<float> const& reference) {
     return greatest / (static_cast<double>(*high) - static_cast<double>(*low));
 }
 
-} // namespace
-
 int compare_engine(std::string_view engine, std::string_view way_in, double bound,
                    std::function<render_result<float>(engine_case const&)> const& run) {
     try {
-        std::filesystem::path const folder = GENRENDER_REFERENCE_DENOISER "/weights";
         double greatest = 0;
         double least_effect = 1;
         std::string times;
         std::string shares;
         for (auto const size : {std::size_t{64}, std::size_t{128}}) {
-            auto const given = case_of(folder, size);
-            auto source = reference::reference_weights<float>::from_folder(folder);
-            reference_network<float> const network(source, given.conditioning);
+            auto const given = case_of_size(size);
+            auto const network =
+                reference::stable_diffusion<float>{reference::pipeline_files(given.folder)}.network(given.conditioning);
             auto const rendered = [&](render_settings<float> const& settings) {
                 return genrender::render(network, to_uv_view(given.UV), {.settings = settings}).z;
             };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// One run for engines of every kind: the reference denoiser's folder, maps and settings, and the row of the table that an
-// engine's frames make beside those of the library's own network.
+// One run for engines of every kind: the miniature's folder, maps and settings, and the row of the table that an engine's
+// frames make beside those of the library's own network.
 #pragma once
 
+#include <genrender/core/tensor.hpp>
 #include <genrender/maps/uv_maps.hpp>
 #include <genrender/pipeline/render.hpp>
 #include <genrender/pipeline/render_settings.hpp>
@@ -10,6 +11,7 @@
 #include <genrender/reference/unet_config.hpp>
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
@@ -26,9 +28,10 @@ struct named_tensor {
 
 using named_tensors = std::map<std::string, named_tensor>; ///< of a file
 
-/// What a run is given: the architecture and all tensors of both networks, tokens of the prompts and the hint of every
-/// frame, maps and settings.
+/// What a run is given: the folder, the architecture and all tensors of UNet and ControlNet, encoded prompts and the hint
+/// of every frame, maps and settings.
 struct engine_case {
+    std::filesystem::path folder;
     reference::unet_config config;
     named_tensors unet;
     named_tensors controlnet;
@@ -37,14 +40,22 @@ struct engine_case {
     render_settings<float> settings;
 };
 
-/// Renders 8 frames of 64 and of 128 pixels by `run` and by the library's own network, both told the same, on one thread, and
-/// prints the line
+/// A camera that goes around a still life in 8 frames, in pictures of `size` pixels a side, with the prompts as the
+/// folder's text encoder encodes them. Throws file_error where the folder is not as it should be.
+engine_case case_of_size(std::size_t size);
+
+/// The greatest difference of two stacks of latents, in parts of the range of the second. Throws shape_error if their
+/// shapes differ.
+double difference(latents<float> const& z, latents<float> const& reference);
+
+/// Renders the cases of 64 and of 128 pixels by `run` and by the library's own network, both told the same, on one thread,
+/// and prints the line
 ///
 ///     engine | way in | - | - | greatest difference | run s against the reference network | library outside the denoiser
 ///
-/// where `-` are lines and seconds of compiling, which table.cmake knows, and run s are of the processor's time. The difference is a share of the range of the
-/// reference's latents, the greatest of both sizes. Returns 0; 1 if it is above `bound`, if an engine without injection
-/// would pass too, or with a sentence if something throws.
+/// where `-` are lines and seconds of compiling, which table.cmake knows, and run s are of the processor's time. The
+/// difference is a share of the range of the reference's latents, the greatest of both sizes. Returns 0; 1 if it is above
+/// `bound`, if an engine without injection would pass too, or with a sentence if something throws.
 int compare_engine(std::string_view engine, std::string_view way_in, double bound,
                    std::function<render_result<float>(engine_case const&)> const& run);
 

@@ -273,7 +273,7 @@ TEST_SUITE("adapters/torch") {
         std::array const of_fewer{sparse_rows<float>{}, sparse_rows<float>{}, sparse_rows<float>{},
                                   sparse_rows<float>{}};
         CHECK(error_of([&] { both.call.mix(both.f, both.f, of_fewer, 0.5f); }) ==
-              "torch_attention_call::mix: rows is [0], expected [80]");
+              "mix_torch_rows: rows is [0], expected [80]");
     }
     TEST_CASE("LibTorch scales logits as the library's call does, alike or a frame each") {
         static_assert(scaling_attention_call<torch_attention_call>);

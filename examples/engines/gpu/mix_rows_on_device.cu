@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The kernel of eq. 6 on this machine's GPU: against the host's definition, and its speed against that of a copy.
 #include <genrender/adapters/cuda/mix_rows.cuh>
+#include <genrender/blending/call_rows.hpp>
 #include <genrender/blending/padded_rows.hpp>
 
 #include <algorithm>
@@ -89,6 +90,7 @@ bool compare(char const* name, std::size_t frames, std::size_t tokens, std::size
     auto const F = numbers<Real>(frames * tokens * channels, source);
     auto const bank = numbers<Stored>(keyframes * tokens * channels, source);
     genrender::padded_rows<float> rows{frames, tokens, width, {}, {}, {}};
+    genrender::call_rows<float> lists; // the same
     for (std::size_t row = 0; row < frames * tokens; ++row) {
         bool const is_covered = row % 4 != 0;
         for (std::size_t w = 0; w < width; ++w) {
@@ -96,8 +98,13 @@ bool compare(char const* name, std::size_t frames, std::size_t tokens, std::size
             bool const is_used = is_covered && (w + 1 < width || row % 5 != 0);
             rows.index.push_back(is_used ? static_cast<std::int32_t>(w * tokens + (row + 17 * w) % tokens) : 0);
             rows.weights.push_back(is_used ? 0.8f / static_cast<float>(row % 5 != 0 ? width : width - 1) : 0.0f);
+            if (is_used) {
+                lists.index.push_back(rows.index.back());
+                lists.weights.push_back(rows.weights.back());
+            }
         }
         rows.own.push_back(is_covered ? 0.2f : 1.0f);
+        lists.offsets.push_back(static_cast<std::int32_t>(lists.index.size()));
     }
     device_array<Real> const device_F(F);
     device_array<Stored> const device_bank(bank);
@@ -111,6 +118,14 @@ bool compare(char const* name, std::size_t frames, std::size_t tokens, std::size
     };
     mix();
     auto const got = device_F.on_host();
+    device_array<Real> const listed_F(F);
+    device_array<std::int32_t> const list_offsets(lists.offsets);
+    device_array<std::int32_t> const list_index(lists.index);
+    device_array<float> const list_weights(lists.weights);
+    cuda::device_row_lists const list_plan{list_offsets.data, list_index.data, list_weights.data, own.data, plan.rows};
+    require(cuda::mix_rows(listed_F.data, device_bank.data, list_plan, static_cast<std::int32_t>(channels)),
+            "mix_rows");
+    auto const listed = listed_F.on_host();
 
     std::vector<float> expected(F.size());
     std::vector<float> wide_bank(bank.size());
@@ -121,8 +136,10 @@ bool compare(char const* name, std::size_t frames, std::size_t tokens, std::size
         genrender::strided_view<float const, 3>(wide_bank.data(), {keyframes, tokens, channels}), rows.view());
     float greatest = 0;
     for (std::size_t i = 0; i < got.size(); ++i) {
-        auto const apart = std::abs(widened(got[i]) - expected[i]);
-        greatest = apart <= greatest ? greatest : apart;
+        for (auto const value : {widened(got[i]), widened(listed[i])}) {
+            auto const apart = std::abs(value - expected[i]);
+            greatest = apart <= greatest ? greatest : apart;
+        }
     }
 
     // What has to move: F of covered rows in and out, every row of the bank that is read, the plan.

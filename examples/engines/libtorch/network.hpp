@@ -5,6 +5,7 @@
 #include <ATen/ATen.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -15,8 +16,10 @@
 namespace engine {
 
 using tensor = at::Tensor;
-/// Gives the output of a self-attention module, before its matrix `to_out`, for its normed input [frames, tokens, channels].
-using self_attention = std::function<tensor(std::string const& module, tensor const& f)>;
+/// Gives F [frames, tokens, channels] of a self-attention module, before its matrix `to_out`: by its name, its normed input
+/// f, W^Q, W^K, W^V and its number of heads.
+using self_attention = std::function<tensor(std::string const& module, tensor const& f, tensor const& Q,
+                                            tensor const& K, tensor const& V, std::int64_t heads)>;
 
 inline tensor attention(tensor const& Q, tensor const& K, tensor const& V, std::int64_t heads) {
     auto const by_heads = [&](tensor const& x) { return x.unflatten(2, {heads, x.size(2) / heads}).transpose(1, 2); };
@@ -32,33 +35,23 @@ struct context {
 
 struct network {
     std::map<std::string, tensor> tensors;
-    std::vector<std::int64_t> heads; // of each level
+    std::vector<std::int64_t> heads; // of each level, the finest first
     std::int64_t groups = 1;
 
+    tensor get(std::string const& name) const { return tensors.count(name) > 0 ? tensors.at(name) : tensor(); }
+    tensor weight(std::string const& name) const { return tensors.at(name + ".weight"); }
     bool has(std::string const& name) const { return tensors.count(name + ".weight") > 0; }
-    tensor const& weight(std::string const& name) const { return tensors.at(name + ".weight"); }
-    tensor bias(std::string const& name) const {
-        return tensors.count(name + ".bias") > 0 ? tensors.at(name + ".bias") : tensor();
-    }
-    std::int64_t last_level() const { return static_cast<std::int64_t>(heads.size()) - 1; }
-    /// Of the block that a module is in: 0 is the finest.
-    std::int64_t level_of(std::string const& module) const {
-        auto const number = module[0] == 'm' ? last_level() : std::stoll(module.substr(module.find('.') + 1));
-        return module[0] == 'u' ? last_level() - number : number;
-    }
-    std::int64_t heads_of(std::string const& module) const { return heads[static_cast<std::size_t>(level_of(module))]; }
-
     tensor conv(tensor const& x, std::string const& name, std::int64_t stride = 1) const {
-        return at::conv2d(x, weight(name), bias(name), stride, weight(name).size(2) / 2);
+        return at::conv2d(x, weight(name), get(name + ".bias"), stride, weight(name).size(2) / 2);
     }
     tensor linear(tensor const& x, std::string const& name) const {
-        return at::linear(x, weight(name).flatten(1), bias(name));
+        return at::linear(x, weight(name).flatten(1), get(name + ".bias"));
     }
     tensor norm(tensor const& x, std::string const& name, double eps = 1e-5) const {
-        return at::group_norm(x, groups, weight(name), bias(name), eps);
+        return at::group_norm(x, groups, weight(name), get(name + ".bias"), eps);
     }
     tensor layer_norm(tensor const& x, std::string const& name) const {
-        return at::layer_norm(x, {x.size(2)}, weight(name), bias(name));
+        return at::layer_norm(x, {x.size(2)}, weight(name), get(name + ".bias"));
     }
     tensor resnet(tensor const& x, context const& in, std::string const& name) const {
         auto const time = linear(in.time, name + ".time_emb_proj").unsqueeze(-1).unsqueeze(-1);
@@ -66,55 +59,59 @@ struct network {
         auto const y = conv(at::silu(norm(h, name + ".norm2")), name + ".conv2");
         return y + (has(name + ".conv_shortcut") ? conv(x, name + ".conv_shortcut") : x);
     }
-    tensor transformer(tensor const& x, context const& in, std::string const& name) const {
+    tensor transformer(tensor const& x, context const& in, std::string const& name, std::int64_t number) const {
         auto h = linear(norm(x, name + ".norm", 1e-6).flatten(2).transpose(1, 2), name + ".proj_in");
         for (int i = 0; has(name + ".transformer_blocks." + std::to_string(i) + ".norm1"); ++i) {
             auto const block = name + ".transformer_blocks." + std::to_string(i);
-            h = h + linear(in.run(block + ".attn1", layer_norm(h, block + ".norm1")), block + ".attn1.to_out.0");
-            auto const Q = linear(layer_norm(h, block + ".norm2"), block + ".attn2.to_q");
-            auto const K = linear(in.prompt, block + ".attn2.to_k");
-            auto const F = attention(Q, K, linear(in.prompt, block + ".attn2.to_v"), heads_of(name));
-            h = h + linear(F, block + ".attn2.to_out.0");
+            auto const self = block + ".attn1";
+            auto const F = in.run(self, layer_norm(h, block + ".norm1"), weight(self + ".to_q"), weight(self + ".to_k"),
+                                  weight(self + ".to_v"), number);
+            h = h + linear(F, self + ".to_out.0");
+            auto const cross = block + ".attn2";
+            auto const Q = linear(layer_norm(h, block + ".norm2"), cross + ".to_q");
+            auto const K = linear(in.prompt, cross + ".to_k");
+            h = h + linear(attention(Q, K, linear(in.prompt, cross + ".to_v"), number), cross + ".to_out.0");
             auto const parts = linear(layer_norm(h, block + ".norm3"), block + ".ff.net.0.proj").chunk(2, -1);
             h = h + linear(parts[0] * at::gelu(parts[1]), block + ".ff.net.2");
         }
         return x + linear(h, name + ".proj_out").transpose(1, 2).unflatten(2, {x.size(2), x.size(3)});
     }
     /// A resnet of a block, and the attention behind it if there is one.
-    tensor layer(tensor const& x, context const& in, std::string const& block, int i) const {
+    tensor layer(tensor const& x, context const& in, std::string const& block, int i, std::size_t level) const {
         auto const h = resnet(x, in, block + ".resnets." + std::to_string(i));
         auto const behind = block + ".attentions." + std::to_string(i);
-        return has(behind + ".norm") ? transformer(h, in, behind) : h;
+        return has(behind + ".norm") ? transformer(h, in, behind, heads[level]) : h;
     }
     tensor embedded_time(double t) const {
         auto const half = weight("time_embedding.linear_1").size(1) / 2;
-        auto const angles =
-            at::arange(half, weight("conv_in").options()).mul(-std::log(10000.0) / static_cast<double>(half)).exp() * t;
+        auto const step = -std::log(10000.0) / static_cast<double>(half);
+        auto const angles = at::arange(half, weight("conv_in").options()).mul(step).exp() * t;
         auto const waves = at::cat({angles.cos(), angles.sin()}).unsqueeze(0);
         return at::silu(linear(at::silu(linear(waves, "time_embedding.linear_1")), "time_embedding.linear_2"));
     }
     /// The way down, the middle last.
     std::vector<tensor> encode(tensor const& z, context const& in, tensor const& hint = {}) const {
         std::vector<tensor> maps{hint.defined() ? conv(z, "conv_in") + hint : conv(z, "conv_in")};
-        for (std::int64_t level = 0; level <= last_level(); ++level) {
+        for (std::size_t level = 0; level < heads.size(); ++level) {
             auto const block = "down_blocks." + std::to_string(level);
             for (int i = 0; has(block + ".resnets." + std::to_string(i) + ".conv1"); ++i) {
-                maps.push_back(layer(maps.back(), in, block, i));
+                maps.push_back(layer(maps.back(), in, block, i, level));
             }
             if (has(block + ".downsamplers.0.conv")) {
                 maps.push_back(conv(maps.back(), block + ".downsamplers.0.conv", 2));
             }
         }
-        maps.push_back(resnet(layer(maps.back(), in, "mid_block", 0), in, "mid_block.resnets.1"));
+        auto const middle = layer(maps.back(), in, "mid_block", 0, heads.size() - 1);
+        maps.push_back(resnet(middle, in, "mid_block.resnets.1"));
         return maps;
     }
     tensor decode(std::vector<tensor> maps, context const& in) const {
         auto h = std::exchange(maps.back(), {});
         maps.pop_back();
-        for (std::int64_t number = 0; number <= last_level(); ++number) {
+        for (std::size_t number = 0; number < heads.size(); ++number) {
             auto const block = "up_blocks." + std::to_string(number);
             for (int i = 0; has(block + ".resnets." + std::to_string(i) + ".conv1"); ++i) {
-                h = layer(at::cat({h, maps.back()}, 1), in, block, i);
+                h = layer(at::cat({h, maps.back()}, 1), in, block, i, heads.size() - 1 - number);
                 maps.pop_back();
             }
             if (has(block + ".upsamplers.0.conv")) {
@@ -142,15 +139,14 @@ struct network {
     }
 };
 
-/// The output of the UNet for c_in z at time t.
+/// The output of the UNet for c_in z at time t, a prompt [1, words, channels] and embedded hints.
 inline tensor predict(network const& unet, network const& control, tensor const& z, double t, tensor const& prompt,
-                      tensor const& hint, self_attention const& run) {
-    self_attention const own = [&](std::string const& name, tensor const& f) {
-        auto const project = [&](char const* part) { return control.linear(f, name + part); };
-        return attention(project(".to_q"), project(".to_k"), project(".to_v"), control.heads_of(name));
+                      tensor const& hints, self_attention const& run) {
+    auto const own = [](auto const&, tensor const& f, tensor const& Q, tensor const& K, tensor const& V, auto heads) {
+        return attention(at::linear(f, Q), at::linear(f, K), at::linear(f, V), heads);
     };
     auto const words = prompt.expand({z.size(0), -1, -1});
-    auto const added = control.control(z, {control.embedded_time(t), words, own}, hint);
+    auto const added = control.control(z, {control.embedded_time(t), words, own}, hints);
     context const in{unet.embedded_time(t), words, run};
     auto maps = unet.encode(z, in);
     for (std::size_t i = 0; i < maps.size(); ++i) {

@@ -3,7 +3,7 @@
 # for a whole CUDA toolkit if it was built for one; these two libraries need only its runtime and cupti, which pip installs
 # beside them and they find by themselves (get.sh). The Python is GENRENDER_ENGINE_PYTHON, or that of get.sh. With
 # GENRENDER_TORCH_CUDA its library for CUDA devices, too, which needs all that pip installs. Where there is no package
-# `genrender_torch_missing` is a sentence.
+# `genrender_torch_missing` is a sentence, else `genrender_torch_python` is the Python that has it.
 set(genrender_torch_missing "${GENRENDER_ENGINE_PYTHON} has no package torch with headers, nor has build/engines/libtorch")
 foreach(python IN ITEMS ${GENRENDER_ENGINE_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/../../../build/engines/libtorch/bin/python3)
     execute_process(COMMAND ${python} -c
@@ -11,6 +11,7 @@ foreach(python IN ITEMS ${GENRENDER_ENGINE_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/../
         OUTPUT_VARIABLE torch_folder OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     if(EXISTS "${torch_folder}/include/ATen/ATen.h")
         set(genrender_torch_missing "")
+        set(genrender_torch_python ${python})
         break()
     endif()
 endforeach()

@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/adapters/torch_mix.hpp>
 #include <genrender/adapters/torch_plans.hpp>
 #include <genrender/attention/attention_call.hpp>
 #include <genrender/attention/feature_storage.hpp>
@@ -14,9 +15,7 @@
 #include <genrender/core/sparse_rows.hpp>
 
 #include <ATen/core/Tensor.h>
-#include <ATen/ops/addcmul.h>
 #include <ATen/ops/cat.h>
-#include <ATen/ops/embedding_bag.h>
 #include <ATen/ops/linear.h>
 #include <ATen/ops/scaled_dot_product_attention.h>
 
@@ -28,7 +27,6 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -133,24 +131,15 @@ public:
         return at::cat(F);
     }
 
-    /// F_out of eq. 6 in memory of its own. Throws shape_error if rows are of other frames or tokens than F_hat, value_error
-    /// as make_call_rows does.
+    /// F_out of eq. 6, in memory of its own unless a kernel of the device (torch_mix_kernel_of) writes into F_hat. Throws
+    /// shape_error if rows are of other frames or tokens than F_hat, value_error as make_call_rows does.
     at::Tensor mix(at::Tensor const& F_hat, at::Tensor const& F_KF, std::span<sparse_rows<float> const> rows,
                    float alpha) const {
         require_frames("rows", static_cast<std::int64_t>(rows.size()), static_cast<std::size_t>(F_hat.size(0)));
         if (alpha == 0) {
             return F_hat;
         }
-        auto const plan = plans_.rows(rows, alpha, F_hat.device());
-        auto const type = c10::promoteTypes(F_hat.scalar_type(), at::kFloat);
-        auto const own = F_hat.reshape({-1, F_hat.size(2)}).to(type);
-        require_extents("torch_attention_call::mix", "rows", std::array{static_cast<std::size_t>(plan.own.size(0))},
-                        std::array{static_cast<std::size_t>(own.size(0))});
-        auto const source = F_KF.reshape({-1, F_KF.size(2)}).to(type);
-        constexpr std::int64_t sum = 0;
-        auto const bag =
-            at::embedding_bag(source, plan.index, plan.offsets, false, sum, false, plan.weights.to(type), true);
-        return at::addcmul(std::get<0>(bag), own, plan.own.to(type)).view(F_hat.sizes()).to(F_hat.scalar_type());
+        return mix_torch_rows(F_hat, F_KF, plans_.rows(rows, alpha, F_hat.device()));
     }
 
     /// The same with variance kept (variance_keeping_call), in sums over the tokens of a frame; what F_hat holds at tokens
