@@ -14,6 +14,7 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
+#include <utility>
 
 namespace genrender::examples {
 
@@ -44,7 +45,7 @@ engine_case case_of(std::filesystem::path const& folder, std::size_t size) {
     run.settings.steps = 4;
     run.settings.keyframes.count = 3;
     run.settings.frames_per_call = 3;
-    run.settings.noise.seed = 5;
+    run.settings.noise.seed = run.settings.keyframes.seed = 5;
     return run;
 }
 
@@ -71,6 +72,19 @@ double difference(latents<float> const& z, latents<float> const& reference) {
 
 int compare_engine(std::string_view engine, std::string_view way_in, double bound,
                    std::function<render_result<float>(engine_case const&)> const& run) {
+    return compare_frames(engine, way_in, bound, [&](engine_case const& given) {
+        engine_frames frames;
+        frames.seconds = seconds_of([&] {
+            auto result = run(given);
+            frames.z = std::move(result.z);
+            frames.report = std::move(result.report);
+        });
+        return frames;
+    });
+}
+
+int compare_frames(std::string_view engine, std::string_view way_in, double bound,
+                   std::function<engine_frames(engine_case const&)> const& run) {
     try {
         std::filesystem::path const folder = GENRENDER_REFERENCE_DENOISER "/weights";
         double greatest = 0;
@@ -85,9 +99,8 @@ int compare_engine(std::string_view engine, std::string_view way_in, double boun
                 return genrender::render(network, to_uv_view(given.UV), {.settings = settings}).z;
             };
             latents<float> reference;
-            render_result<float> frames;
             auto const reference_seconds = seconds_of([&] { reference = rendered(given.settings); });
-            auto const engine_seconds = seconds_of([&] { frames = run(given); });
+            auto const frames = run(given);
             greatest = std::max(greatest, difference(frames.z, reference));
             if (size == 64) {
                 auto plain = given.settings;
