@@ -50,7 +50,7 @@ class Run:
         return inputs
 
 
-def render(maps, graph, *, channels, grid, steps=50, seed=0, keyframes=4, frames_per_call=1, alpha=0.7, branch_weights=(1,),
+def render(maps, graph, *, channels, grid, steps=50, seed=0, keyframes=None, frames_per_call=1, alpha=0.7, branch_weights=(1,),
            prediction="epsilon", schedule=None, sampler="euler", normalization="mean", average="quality", noise="uv",
            width=None, observer=None):
     """Consistent clean latents of all frames [frames, channels, *grid], as a NumPy array of float32.
@@ -59,10 +59,12 @@ def render(maps, graph, *, channels, grid, steps=50, seed=0, keyframes=4, frames
     guidance branch, and returns its outputs by name, "v" among them. `inputs` are "z" [frames, channels, *grid], scaled, "t"
     [1], a time that may have a fraction, and what genrender.add_feature_io added; the function adds what else the network
     takes, and leaves out inputs that the graph does not have. It is called with `keyframes` frames or `frames_per_call`, the
-    last time of a pass with what is left. `width` is that of the padded rows, `keyframes` where it is None. `branch_weights`
+    last time of a pass with what is left; None is 4, or all frames if these are fewer. `width` is that of the padded rows,
+    `keyframes` where it is None. `branch_weights`
     are of the outputs of all branches: (1 - s, s) is guidance of scale s. `schedule` is a NoiseSchedule, of Stable Diffusion
     where it is None. Raises ValueError for what does not fit.
     """
+    keyframes = min(4, maps.frames) if keyframes is None else keyframes
     for name, value in (("keyframes", keyframes), ("frames_per_call", frames_per_call), ("branches", len(branch_weights))):
         if value < 1:
             raise ValueError(f"render: {name} is {value}, expected at least 1")

@@ -43,7 +43,8 @@ print(sys.executable if not lacks else '', ' '.join(lacks), '' if lacks else m.v
     set(site ${CMAKE_CURRENT_BINARY_DIR}/site)
     set_target_properties(_genrender PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${site}/genrender)
     file(GLOB parts ${genrender_python_client}/../../../python/genrender/*.py)
-    add_custom_command(TARGET _genrender POST_BUILD COMMAND ${CMAKE_COMMAND} -E copy ${parts} ${site}/genrender)
+    add_custom_target(genrender_python_files COMMAND ${CMAKE_COMMAND} -E make_directory ${site}/genrender
+        COMMAND ${CMAKE_COMMAND} -E copy ${parts} ${site}/genrender)
 
     target_sources(engine_comparison PRIVATE ${genrender_python_client}/client.cpp)
     target_compile_definitions(engine_comparison PRIVATE
@@ -53,5 +54,5 @@ print(sys.executable if not lacks else '', ' '.join(lacks), '' if lacks else m.v
     add_executable(client_${client_NAME} $<TARGET_OBJECTS:engine_comparison>)
     set_target_properties(client_${client_NAME} PROPERTIES LINKER_LANGUAGE CXX)
     target_link_libraries(client_${client_NAME} PRIVATE engine_comparison)
-    add_dependencies(client_${client_NAME} _genrender)
+    add_dependencies(client_${client_NAME} _genrender genrender_python_files)
 endmacro()
