@@ -110,7 +110,7 @@ int compare_frames(std::string_view engine, std::string_view way_in, double boun
             auto const& report = frames.report;
             auto const share = 100 * report.library_seconds / (report.library_seconds + report.denoiser_seconds);
             char text[96];
-            std::snprintf(text, sizeof text, "%s%.2f / %.2f (%zu px)", times.empty() ? "" : ", ", engine_seconds,
+            std::snprintf(text, sizeof text, "%s%.2f / %.2f (%zu px)", times.empty() ? "" : ", ", frames.seconds,
                           reference_seconds, size);
             times += text;
             std::snprintf(text, sizeof text, "%s%.1f %%", shares.empty() ? "" : ", ", share);

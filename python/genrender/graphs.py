@@ -59,10 +59,9 @@ def render(maps, graph, *, channels, grid, steps=50, seed=0, keyframes=None, fra
     guidance branch, and returns its outputs by name, "v" among them. `inputs` are "z" [frames, channels, *grid], scaled, "t"
     [1], a time that may have a fraction, and what genrender.add_feature_io added; the function adds what else the network
     takes, and leaves out inputs that the graph does not have. It is called with `keyframes` frames or `frames_per_call`, the
-    last time of a pass with what is left; None is 4, or all frames if these are fewer. `width` is that of the padded rows,
-    `keyframes` where it is None. `branch_weights`
-    are of the outputs of all branches: (1 - s, s) is guidance of scale s. `schedule` is a NoiseSchedule, of Stable Diffusion
-    where it is None. Raises ValueError for what does not fit.
+    last time of a pass with what is left. Of `keyframes` None is 4, or all frames if these are fewer. `width` is that of the
+    padded rows, `keyframes` where it is None. `branch_weights` are of the outputs of all branches: (1 - s, s) is guidance of
+    scale s. `schedule` is a NoiseSchedule, of Stable Diffusion where it is None. Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
     for name, value in (("keyframes", keyframes), ("frames_per_call", frames_per_call), ("branches", len(branch_weights))):
