@@ -3,11 +3,13 @@
 which client.cpp has written, and writes FOLDER/result.*, which it reads."""
 
 import json
+import math
 import pathlib
 import sys
 import time
 
 import genrender
+import numpy
 from safetensors.numpy import load_file, save_file
 
 
@@ -21,7 +23,10 @@ class Case:
         self.settings = json.loads((self.folder / "case.json").read_text())
         tensors = load_file(self.folder / "case.safetensors")
         self.maps = genrender.Maps(tensors["uv"], tensors["object"].astype("uint32"), tensors["coverage"].astype("uint8"))
-        self.hint, self.prompts = tensors["hint"], (tensors["empty_prompt"], tensors["prompt"])
+        self.hint, prompts = tensors["hint"], (tensors["empty_prompt"], tensors["prompt"])
+        # Attention to a prompt that stands there several times is attention to the prompt; so both are of one length.
+        tokens = math.lcm(*map(len, prompts))
+        self.prompts = tuple(numpy.tile(prompt, (tokens // len(prompt), 1)) for prompt in prompts)
         self.denoiser_seconds = 0
 
     def timed(self, call):
