@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -25,23 +24,22 @@ namespace {
 template <std::size_t Rank>
 reference::safetensors_source source_of(stack<float, Rank> const& values) {
     auto const& extents = values.extents();
-    return {{extents.begin(), extents.end()}, {values.data(), values.data() + values.size()}};
-}
-
-template <class Tensor>
-reference::safetensors_source source_of(Tensor const& values) {
-    std::vector<float> numbers;
-    std::transform(values.begin(), values.end(), std::back_inserter(numbers),
-                   [](auto value) { return static_cast<float>(value); });
-    return {{values.shape().begin(), values.shape().end()}, numbers};
+    return {{extents.begin(), extents.end()}, {values.data(), values.size()}};
 }
 
 void write_case(std::filesystem::path const& folder, engine_case const& given) {
     auto const& told = given.conditioning;
+    auto const& UV = given.UV;
+    std::vector<std::size_t> const pixels(UV.coverage.shape().begin(), UV.coverage.shape().end());
+    std::vector<float> const coverage(UV.coverage.begin(), UV.coverage.end());
+    std::vector<float> object(UV.object.begin(), UV.object.end());
+    for (std::size_t i = 0; i < object.size(); ++i) { // numbers of objects are small, of no object anything
+        object[i] = coverage[i] > 0 ? object[i] : 0;
+    }
     reference::write_safetensors((folder / "case.safetensors").string(),
-                                 {{"uv", source_of(given.UV.uv)},
-                                  {"object", source_of(given.UV.object)},
-                                  {"coverage", source_of(given.UV.coverage)},
+                                 {{"uv", {{UV.uv.shape().begin(), UV.uv.shape().end()}, {UV.uv.data(), UV.uv.size()}}},
+                                  {"object", {pixels, object}},
+                                  {"coverage", {pixels, coverage}},
                                   {"hint", source_of(told.hint)},
                                   {"prompt", source_of(told.prompt)},
                                   {"empty_prompt", source_of(told.empty_prompt)}});
