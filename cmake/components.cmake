@@ -371,12 +371,20 @@ genrender_adapter(torch PACKAGES Torch HEADERS
 genrender_adapter(cuda HEADERS
     adapters/cuda/mix_rows.cuh
     adapters/cuda/torch_mix.cuh)
+# What adapters of static graphs share is in each of them.
+set(genrender_graph_headers
+    adapters/graph_denoiser.hpp
+    adapters/graph_feature_io.hpp)
 genrender_adapter(ggml PACKAGES ggml HEADERS
     adapters/ggml.hpp
-    adapters/ggml_memory.hpp)
+    adapters/ggml_memory.hpp
+    adapters/ggml_site.hpp
+    ${genrender_graph_headers})
 genrender_adapter(openvino PACKAGES OpenVINO HEADERS
     adapters/openvino.hpp
-    adapters/openvino_memory.hpp)
+    adapters/openvino_memory.hpp
+    adapters/openvino_site.hpp
+    ${genrender_graph_headers})
 genrender_adapter(eigen HEADERS
     adapters/eigen.hpp)
 genrender_adapter(mdspan HEADERS

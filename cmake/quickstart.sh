@@ -26,8 +26,9 @@ sh cmake/quickstart.sh WHAT
             with --filter REGEX only rows whose names match, with --compare OTHER.json beside the benchmarks.json of an
             earlier run, with --no-peers without the programs of others (benchmarks/README.md)
   engines   programs of other engines with this library in them, each of examples/engines/ that is to be had: fetches the
-            engines into build/engines, compares their frames and prints one table, and what was skipped and why;
-            LibTorch is that of the Python that GENRENDER_PEER_PYTHON names, where it has it
+            engines into build/engines, compares their frames and prints one table, and what was skipped and why; those in
+            Python and LibTorch are of the Python that GENRENDER_PEER_PYTHON names, where it has their packages, else of
+            virtual environments in build/engines (PyTorch is about 3 GB there)
   gpu       on a machine with an NVIDIA GPU, in five minutes: the fused kernel of eq. 6 against the host's, its speed
             against a copy's, and a whole run of LibTorch on the GPU, with that kernel, against the processor's and against
             the same run in plain PyTorch on the GPU
@@ -47,7 +48,7 @@ bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev li
 # What its tests need besides.
 test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels valgrind"
 engine_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
-    nlohmann-json3-dev libutf8proc-dev doctest-dev python3-venv"
+    nlohmann-json3-dev libutf8proc-dev doctest-dev python3-venv python3-dev"
 # What reads the sources without compiling them. Another clang-format would break other lines.
 docs_packages="cmake doxygen"
 slow_check_packages="$test_packages $docs_packages clang-format-14 clang-tidy"

@@ -15,6 +15,7 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
+#include <utility>
 
 namespace genrender::examples {
 
@@ -76,6 +77,19 @@ double difference(latents<float> const& z, latents<float> const& reference) {
 
 int compare_engine(std::string_view engine, std::string_view way_in, double bound,
                    std::function<render_result<float>(engine_case const&)> const& run) {
+    return compare_frames(engine, way_in, bound, [&](engine_case const& given) {
+        engine_frames frames;
+        frames.seconds = seconds_of([&] {
+            auto result = run(given);
+            frames.z = std::move(result.z);
+            frames.report = std::move(result.report);
+        });
+        return frames;
+    });
+}
+
+int compare_frames(std::string_view engine, std::string_view way_in, double bound,
+                   std::function<engine_frames(engine_case const&)> const& run) {
     try {
         double greatest = 0;
         double least_effect = 1;
@@ -89,9 +103,8 @@ int compare_engine(std::string_view engine, std::string_view way_in, double boun
                 return genrender::render(network, to_uv_view(given.UV), {.settings = settings}).z;
             };
             latents<float> reference;
-            render_result<float> frames;
             auto const reference_seconds = seconds_of([&] { reference = rendered(given.settings); });
-            auto const engine_seconds = seconds_of([&] { frames = run(given); });
+            auto const frames = run(given);
             greatest = std::max(greatest, difference(frames.z, reference));
             if (size == 64) {
                 auto plain = given.settings;
@@ -101,7 +114,7 @@ int compare_engine(std::string_view engine, std::string_view way_in, double boun
             auto const& report = frames.report;
             auto const share = 100 * report.library_seconds / (report.library_seconds + report.denoiser_seconds);
             char text[96];
-            std::snprintf(text, sizeof text, "%s%.2f / %.2f (%zu px)", times.empty() ? "" : ", ", engine_seconds,
+            std::snprintf(text, sizeof text, "%s%.2f / %.2f (%zu px)", times.empty() ? "" : ", ", frames.seconds,
                           reference_seconds, size);
             times += text;
             std::snprintf(text, sizeof text, "%s%.1f %%", shares.empty() ? "" : ", ", share);

@@ -48,14 +48,25 @@ engine_case case_of_size(std::size_t size);
 /// shapes differ.
 double difference(latents<float> const& z, latents<float> const& reference);
 
-/// Renders the cases of 64 and of 128 pixels by `run` and by the library's own network, both told the same, on one thread,
-/// and prints the line
+/// What an engine's run gave.
+struct engine_frames {
+    latents<float> z;
+    render_report report;
+    double seconds = 0; ///< of the processor's time
+};
+
+/// Renders the cases of 64 and of 128 pixels by `run` and by the library's own network, both told the same, on one thread, and
+/// prints the line
 ///
 ///     engine | way in | - | - | greatest difference | run s against the reference network | library outside the denoiser
 ///
-/// where `-` are lines and seconds of compiling, which table.cmake knows, and run s are of the processor's time. The
-/// difference is a share of the range of the reference's latents, the greatest of both sizes. Returns 0; 1 if it is above
-/// `bound`, if an engine without injection would pass too, or with a sentence if something throws.
+/// where `-` are lines and seconds of compiling, which table.cmake knows, and run s are of the processor's time. The difference is a share of the range of the
+/// reference's latents, the greatest of both sizes. Returns 0; 1 if it is above `bound`, if an engine without injection
+/// would pass too, or with a sentence if something throws.
+int compare_frames(std::string_view engine, std::string_view way_in, double bound,
+                   std::function<engine_frames(engine_case const&)> const& run);
+
+/// The same for an engine in this program, whose seconds are measured here.
 int compare_engine(std::string_view engine, std::string_view way_in, double bound,
                    std::function<render_result<float>(engine_case const&)> const& run);
 

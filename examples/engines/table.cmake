@@ -6,8 +6,9 @@
 # OPTIONS are further arguments for configuring. A client's project defines the target client_<folder>, which links engine_comparison and prints a row; -D
 # GENRENDER_ENGINE_PYTHON tells it the Python whose packages it may use: PYTHON, else the one that the environment variable
 # GENRENDER_PEER_PYTHON names, else python3. A project whose engine is not there fails with a sentence `skipped: ...`. A `-`
-# in a row is filled in here: lines of code without comments, of files `network.*` and of all others, and the seconds of
-# the processor's time in which the client's own files were compiled and linked, small where they were before. Fails if a client does; engines that are skipped do not count.
+# in a row is filled in here: lines of code without comments, of files `network.*` with what these include of another
+# folder's and of all others, and the seconds of the processor's time in which the client's own files were compiled and
+# linked, for Python genrender's module, small where they were before. Fails if a client does; engines that are skipped do not count.
 cmake_minimum_required(VERSION 3.25)
 set(here ${CMAKE_CURRENT_LIST_DIR})
 
@@ -88,6 +89,13 @@ foreach(engine IN LISTS ENGINES)
 
     # Text is replaced by position: a row holds neither brackets nor semicolons.
     file(GLOB network ${here}/${engine}/network.*)
+    foreach(file IN LISTS network)
+        file(STRINGS ${file} includes REGEX "^#include \"[.][.]/[a-z_]+/network[.]hpp\"")
+        foreach(include IN LISTS includes) # what several engines have of their networks in common
+            string(REGEX REPLACE "^#include \"[.][.]|\"$" "" shared "${include}")
+            list(APPEND network ${here}${shared})
+        endforeach()
+    endforeach()
     file(GLOB glue ${here}/${engine}/*.[chp]pp ${here}/${engine}/*.py ${here}/${engine}/*.[ch])
     list(REMOVE_ITEM glue ${network})
     lines_of(of_network ${network})

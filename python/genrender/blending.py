@@ -3,37 +3,15 @@
 
 import torch
 
+from .rows import Rows
 
-class Blending:
-    """The correspondence of an animation at every feature grid that a network turns out to have."""
 
-    def __init__(self, maps, latent_grid, average="quality", first_fill_share=0.5):
-        self.maps, self.latent_grid = maps, latent_grid
-        self.average, self.first_fill_share = average, first_fill_share
-        self._correspondences, self._rows = {}, {}
-
-    def grid_of(self, tokens):
-        """Height and width of a feature map of so many tokens: the latents', halved as often as it takes."""
-        height, width = self.latent_grid
-        while height * width > tokens and height % 2 == 0 and width % 2 == 0:
-            height, width = height // 2, width // 2
-        if height * width != tokens:
-            raise ValueError(f"Blending: a feature map has {tokens} tokens, expected the latents' {self.latent_grid} "
-                             "halved a number of times")
-        return height, width
+class Blending(Rows):
+    """Rows as tensors on a device."""
 
     def rows(self, tokens, keyframes, frames, alpha, device):
         """(index, weights, own) for feature maps of so many tokens; those of one set of frames are kept at a time."""
-        frames_of = (tuple(keyframes), tuple(frames))
-        if self._rows.get("of") != frames_of:
-            self._rows = {"of": frames_of}
-        if (tokens, alpha) not in self._rows:
-            grid = self.grid_of(tokens)
-            if grid not in self._correspondences:
-                self._correspondences[grid] = self.maps.correspondence(*grid)
-            made = self._correspondences[grid].padded_rows(keyframes, frames, alpha, self.first_fill_share, self.average)
-            self._rows[tokens, alpha] = [torch.from_numpy(array).to(device) for array in made]
-        return self._rows[tokens, alpha]
+        return super().rows(tokens, keyframes, frames, alpha, place=lambda array: torch.from_numpy(array).to(device))
 
 
 def mix(F_hat, F_KF, rows):

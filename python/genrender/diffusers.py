@@ -72,7 +72,7 @@ def attend(heads, Q, K, V, factor=1.0):
 class Run:
     """What all evaluations of a run share; `D` is the clean estimate of the whole animation."""
 
-    def __init__(self, pipe, maps, prompt, negative_prompt, clip_skip, height, width, **settings):
+    def __init__(self, pipe, maps, prompt, negative_prompt, clip_skip, height, width, hint, **settings):
         self.__dict__.update(settings)
         self.pipe, self.device, config = pipe, pipe._execution_device, pipe.scheduler.config
         scale = pipe.vae_scale_factor
@@ -81,8 +81,9 @@ class Run:
         self.grid = height // scale, width // scale
         self.blending = Blending(maps, self.grid, self.average)
         self.background = maps.background(*self.grid)
-        self.hint = torch.from_numpy(maps.inverse_depth(height, width))[:, None].repeat(1, 3, 1, 1)
-        self.hint = self.hint.to(self.device, pipe.controlnet.dtype)
+        if hint is None:
+            hint = torch.from_numpy(maps.inverse_depth(height, width))[:, None].repeat(1, 3, 1, 1)
+        self.hint = hint.to(self.device, pipe.controlnet.dtype)
         self.prediction = config.prediction_type
         if config.beta_schedule == "scaled_linear":
             self.schedule = NoiseSchedule.scaled_linear(config.beta_start, config.beta_end, config.num_train_timesteps)
@@ -157,10 +158,12 @@ class Run:
 @torch.no_grad()
 def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, seed=0, keyframes=None, guidance_scale=7.5,
            conditioning_scale=1.0, clip_skip=None, sampler="euler", alpha=0.7, pre_attention=True, post_attention=True,
-           normalization="mean", average="quality", noise="uv", frames_per_call=1, observer=None, length_correction=0.0):
+    : average="quality", frames_per_call=1, hint=None, length_correction=0.0 noise="uv", normalization="mean",
+    observer=None observer=None,
     """Consistent clean latents of all frames [frames, channels, height / 8, width / 8], in float32 on the pipe's device.
 
-    `maps` are genrender.Maps with depth. Of `keyframes` None is 4, or all frames if these are fewer; 0 renders every frame by
+    `maps` are genrender.Maps with depth. `hint` is what the ControlNet sees of each frame [frames, channels, height, width], as
+    a tensor: the depth of the maps, repeated over three channels, where it is None. Of `keyframes` None is 4, or all frames if these are fewer; 0 renders every frame by
     itself, as the pipeline does. `alpha` is a number or a function of step and name of the module;
     `normalization` is mean, mean_and_supported_deviation, low_band, mean_and_deviation (the paper's) or None. `length_correction`
     is the power of ln(keys) / ln(own keys) on the logits where frames attend to others: 1 is the length-corrected temperature.
@@ -170,9 +173,9 @@ def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, s
     for name, value, least in (("keyframes", keyframes, 0), ("frames_per_call", frames_per_call, 1)):
         if value < least:
             raise ValueError(f"render: {name} is {value}, expected at least {least}")
-    if not (math.isfinite(length_correction) and length_correction >= 0):
-        raise ValueError(f"render: length_correction is {length_correction}, expected a finite number, 0 or more")
-    run = Run(pipe, maps, prompt, negative_prompt, clip_skip, height, width, keyframe_count=keyframes, seed=seed,
+    (math.isfinite(length_correction 0 : = >= Run(pipe, ValueError(f"render: a and clip_skip, expected finite height,
+    hint, if is keyframe_count=keyframes, length_correction maps, more" negative_prompt, not number, or prompt, raise
+    run seed=seed, width, {length_correction},
               guidance_scale=guidance_scale, conditioning_scale=conditioning_scale, alpha=alpha, average=average,
               pre_attention=pre_attention, post_attention=post_attention, normalization=normalization,
               frames_per_call=frames_per_call, length_correction=length_correction)

@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: MIT
-// One self-attention module of an engine's static graphs beside the same module of the library's own call.
+// What every adapter of static graphs is tested by: one self-attention module beside the library's own call, and a denoiser
+// whose estimate is known.
 #pragma once
 
 #include "../injection/dense_equations.hpp"
 #include "../support/plans_of.hpp"
 
+#include <genrender/adapters/graph_denoiser.hpp>
 #include <genrender/injection/feature_io.hpp>
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/sampling/run_shapes.hpp>
 
+#include <doctest/doctest.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace genrender::testing {
@@ -98,6 +107,158 @@ module_differences compare_module(module_case const& with) {
         (step == 0 ? result.injected : result.second_step) = difference(injects, injected, frames, 30 + step);
     }
     return result;
+}
+
+/// A module as an adapter's graphs, one for each pass and number of frames. `Module` is made of the matrices and has
+/// `graph_type`, `device()` and `build(graph, f)`, which gives F [frames, tokens, channels] of site 1.
+template <class Module>
+struct graph_module {
+    using graph_type = typename Module::graph_type;
+    using features_type = typename graph_type::feature_io_type::features_type;
+
+    graph_module(run_shapes const& shapes, std::span<attention_site const> sites, matrix_module<float> const& matrices)
+        : module(matrices), io(graph_type::make_feature_io(module.device(), shapes, sites)) {}
+
+    template <class Processor>
+    stack<float, 3> operator()(Processor const& processor, attention_place place, std::span<frame_index const> frames,
+                               stack<float, 3> const& f) {
+        adapters::graph_key const key{io->pass_of(processor, frames), frames.size(), place.branch};
+        auto& graph = graphs[key];
+        if (graph == nullptr) {
+            graph = std::make_unique<graph_type>(module.device(), *io, key);
+            graph->finish(module.build(*graph, graph->add_input("f", {f.extent(0), f.extent(1), f.extent(2)})));
+        }
+        graph->write("f", {f.data(), f.size()});
+        io->write(processor, key.pass, place.branch, frames);
+        graph->run();
+        io->record(processor, place.branch, frames);
+        stack<float, 3> F(f.extents());
+        graph->read({F.data(), F.size()});
+        return F;
+    }
+
+    Module module;
+    std::unique_ptr<typename graph_type::feature_io_type> io;
+    std::map<adapters::graph_key, std::unique_ptr<graph_type>> graphs;
+};
+
+/// [GR eq. 3, 5, 6] A module equals the library's call in every pass, with each equation and without, with a mask and
+/// without.
+template <class Module>
+void check_every_pass() {
+    for (auto const pre : {true, false}) {
+        for (auto const post : {true, false}) {
+            for (auto const keeps : {true, false}) {
+                auto const apart = compare_module<graph_module<Module>>({pre, post, keeps});
+                CHECK(apart.plain <= 1e-6);
+                CHECK(apart.keyframe <= 1e-6);
+                CHECK(apart.injected <= 1e-6);
+                CHECK(apart.second_step <= 1e-6);
+            }
+        }
+    }
+}
+
+/// Features in 16 bits differ from the library's by their rounding alone.
+template <class Module>
+void check_half_precision() {
+    for (auto const storage : {feature_storage::f16, feature_storage::bf16}) {
+        auto const apart = compare_module<graph_module<Module>>({true, true, false, storage});
+        CHECK(apart.keyframe <= 1e-6);
+        CHECK(apart.injected > 0);
+        CHECK(apart.injected <= (storage == feature_storage::f16 ? 2e-3 : 2e-2));
+    }
+}
+
+/// Runs that static graphs cannot do are refused before they begin.
+template <class Graph>
+void check_refused_runs(typename Graph::device_type const& device) {
+    run_shapes shapes;
+    CHECK_THROWS_WITH_AS(Graph::make_feature_io(device, shapes, {}), doctest::Contains("shapes.lists_sources"),
+                         value_error);
+    shapes.lists_sources = false;
+    shapes.banks = 2;
+    CHECK_THROWS_WITH_AS(Graph::make_feature_io(device, shapes, {}), doctest::Contains("one bank"), value_error);
+}
+
+/// Inputs go by name and must fit, also those that nothing reads; `twice(graph, x)` is 2 x.
+template <class Graph, class Twice>
+void check_inputs_and_output(typename Graph::device_type const& device, Twice const& twice) {
+    run_shapes shapes;
+    shapes.lists_sources = false;
+    auto const io = Graph::make_feature_io(device, shapes, {});
+    Graph graph(device, *io, {graph_pass::plain, 2, 0});
+    auto const x = graph.add_input("x", {2, 3});
+    graph.add_input("unread", {5});
+    graph.finish(twice(graph, x));
+    std::vector<float> values{1, -2, 3, 4, 5, 6};
+    graph.write("unread", std::vector<float>(5));
+    for (auto const run : {1, 2}) { // what a run leaves behind is of no account
+        values[0] = static_cast<float>(run);
+        graph.write("x", values);
+        graph.run();
+        std::vector<float> out(6);
+        graph.read(out);
+        CHECK(out == std::vector<float>{2 * values[0], -4, 6, 8, 10, 12});
+    }
+    std::vector<float> short_one(5);
+    CHECK_THROWS_WITH_AS(graph.write("x", short_one), doctest::Contains("x.size() is 5, expected 6"), value_error);
+    CHECK_THROWS_WITH_AS(graph.write("y", values), doctest::Contains("name is y"), value_error);
+    CHECK_THROWS_WITH_AS(graph.read(short_one), doctest::Contains("output.size() is 6, expected 5"), value_error);
+}
+
+/// [EDM eq. 7] A denoiser whose network is F = c_in z + shift(channel, branch) gives c_skip z + c_out F, guided, in either
+/// layout; `add(graph, a, b)` is a + b.
+template <class Graph, class Add>
+void check_denoiser(typename Graph::device_type const& device, Add const& add) {
+    constexpr std::size_t channels = 3;
+    constexpr grid_extents grid{2, 4};
+    constexpr float sigma = 1.5f;
+    constexpr float scale = 3;
+    auto const shift_of = [](std::uint32_t branch, std::size_t c) {
+        return static_cast<float>(c) + 0.25f * static_cast<float>(branch + 1);
+    };
+    std::vector<frame_index> const frames{{4}, {1}};
+    auto const z = random_stack<float, 4>({frames.size(), channels, grid.height, grid.width}, 3);
+    for (auto const layout : {adapters::latent_layout::channels_first, adapters::latent_layout::tokens}) {
+        auto const is_tokens = layout == adapters::latent_layout::tokens;
+        adapters::graph_network network{channels, grid, {}, prediction::velocity, {1 - scale, scale}, layout};
+        adapters::graph_denoiser<Graph> const phi(
+            device, network,
+            [&](Graph& graph, typename Graph::tensor_type const& in) {
+                std::vector<std::size_t> const shape =
+                    is_tokens ? std::vector<std::size_t>{1, 1, channels} : std::vector<std::size_t>{1, channels, 1, 1};
+                return add(graph, in, graph.add_input("shift", shape));
+            },
+            [&](Graph& graph, float level, std::span<frame_index const> of) {
+                CHECK(level == sigma);
+                CHECK(of.size() == frames.size());
+                std::array<float, channels> shift{};
+                for (std::size_t c = 0; c < channels; ++c) {
+                    shift[c] = shift_of(graph.key().branch, c);
+                }
+                graph.write("shift", shift);
+            });
+        run_shapes shapes;
+        shapes.lists_sources = false;
+        phi.prepare(shapes);
+        plain_attention processor;
+        stack<float, 4> x0(z.extents());
+        phi(x0.view(), z.view(), sigma, frames, processor);
+        auto const [c_skip, c_out, c_in] = scalings_of(prediction::velocity, sigma);
+        double greatest = 0;
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            for (std::size_t c = 0; c < channels; ++c) {
+                for (std::size_t t = 0; t < grid.size(); ++t) {
+                    auto const at = z(i, c, t / grid.width, t % grid.width);
+                    auto const F = c_in * at + (1 - scale) * shift_of(0, c) + scale * shift_of(1, c);
+                    auto const found = x0(i, c, t / grid.width, t % grid.width);
+                    greatest = std::max<double>(greatest, std::abs(c_skip * at + c_out * F - found));
+                }
+            }
+        }
+        CHECK(greatest <= 1e-5);
+    }
 }
 
 } // namespace genrender::testing

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The operations of the small network as nodes of a ggml graph; features are ne = {channels, tokens, frames}.
+// The small network in ggml: its weights on a backend, and its operations as nodes of a graph; features are ne = {channels,
+// tokens, frames}.
 #pragma once
 
 #include "../static_graph/network.hpp"
@@ -9,19 +10,35 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 
 namespace genrender::examples {
 
-/// Appends nodes to a graph; `weights(w)` is the tensor of a layer's weights, `site(index)` the adapter's module.
-struct ggml_operations {
-    ggml_context* ctx;
-    ggml_cgraph* graph;
-    std::function<ggml_tensor*(layer_weights const&)> weights;
-    std::function<adapters::ggml_site(site_index)> site;
+/// The tensors of a network's weights, by layer; the network and the backend outlive them.
+struct ggml_weights {
+    adapters::ggml_fixed_tensors memory{20};
+    std::map<layer_weights const*, ggml_tensor*> of;
 
-    ggml_tensor* linear(layer_weights const& w, ggml_tensor* x) const { return ggml_mul_mat(ctx, weights(w), x); }
+    ggml_weights(ggml_backend_t backend, small_unet const& net) {
+        for (auto const* const w : net.layers()) {
+            of[w] = memory.add(GGML_TYPE_F32, {w->inputs, w->outputs, 1, 1});
+        }
+        memory.allocate(backend);
+        for (auto const& [w, tensor] : of) {
+            ggml_backend_tensor_set(tensor, w->values.data(), 0, ggml_nbytes(tensor));
+        }
+    }
+};
+
+/// Appends nodes to a graph.
+struct ggml_operations {
+    adapters::ggml_graph& graph;
+    ggml_weights const& weights;
+    ggml_context* ctx = graph.context();
+
+    ggml_tensor* linear(layer_weights const& w, ggml_tensor* x) const {
+        return ggml_mul_mat(ctx, weights.of.at(&w), x);
+    }
     ggml_tensor* add(ggml_tensor* a, ggml_tensor* b) const { return ggml_add(ctx, a, b); }
     ggml_tensor* silu(ggml_tensor* x) const { return ggml_silu(ctx, x); }
     ggml_tensor* normalized(ggml_tensor* x) const { return ggml_norm(ctx, x, small_unet::epsilon); }
@@ -51,7 +68,7 @@ struct ggml_operations {
     }
 
     ggml_tensor* attention(site_index index, small_unet::block const& block, ggml_tensor* f) const {
-        auto const module = site(index);
+        auto const module = graph.site(index);
         auto* const sources = module.sources(ctx, f);
         auto* const Q = by_head(linear(block.query, module.queries(ctx, f)));
         auto* const K = by_head(linear(block.key, sources));
@@ -63,7 +80,7 @@ struct ggml_operations {
         auto* const heads =
             ggml_mul_mat(ctx, V, ggml_soft_max(ctx, products)); // {channels of a head, tokens, heads, frames}
         auto* const F = ggml_cont(ctx, ggml_permute(ctx, heads, 0, 2, 1, 3));
-        return module.output(ctx, graph, f, ggml_reshape_3d(ctx, F, f->ne[0], F->ne[2], F->ne[3]));
+        return module.output(ctx, graph.graph(), f, ggml_reshape_3d(ctx, F, f->ne[0], F->ne[2], F->ne[3]));
     }
 
     /// {channels, tokens, frames} as {channels of a head, tokens, heads, frames}.

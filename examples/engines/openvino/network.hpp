@@ -10,15 +10,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 
 namespace genrender::examples {
 
-/// Makes nodes; `site(index)` is the adapter's module.
+/// Makes nodes of a graph.
 struct openvino_operations {
     using value = adapters::openvino_value;
-    std::function<adapters::openvino_site(site_index)> site;
+    adapters::openvino_graph& graph;
 
     template <class Node, class... Arguments>
     static value make(Arguments&&... arguments) {
@@ -52,7 +51,7 @@ struct openvino_operations {
         return reshaped(make<ov::opset13::Tile>(cells, numbers({1, 1, 2, 1, 2, 1})), {s[0], 4 * s[1], s[2]});
     }
     value attention(site_index index, small_unet::block const& block, value const& f) const {
-        auto const module = site(index);
+        auto const module = graph.site(index);
         auto const sources = module.sources(f);
         ov::OutputVector in{by_head(linear(block.query, module.queries(f))), by_head(linear(block.key, sources)),
                             by_head(linear(block.value, sources))};

@@ -27,7 +27,7 @@ function(genrender_graph_client engine adapter target)
     if(doctest_FOUND)
         set(tests ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../../../tests)
         add_executable(adapter_tests ${tests}/main.cpp ${tests}/adapters/${engine}.test.cpp
-            ${tests}/adapters/${engine}_memory.test.cpp)
+            ${tests}/adapters/${engine}_memory.test.cpp ${tests}/adapters/${engine}_site.test.cpp)
         target_include_directories(adapter_tests PRIVATE ${tests})
         target_link_libraries(adapter_tests PRIVATE ${adapter} ${target} doctest::doctest engine_flags)
         set_target_properties(adapter_tests PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)

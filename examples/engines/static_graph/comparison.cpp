@@ -11,9 +11,9 @@
 #include <genrender/scene/rasterizer.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <utility>
 
@@ -164,10 +164,11 @@ double difference(latents<float> const& a, latents<float> const& b) {
     return greatest / (static_cast<double>(*high) - static_cast<double>(*low));
 }
 
+/// Seconds of the processor's time, which other programs of the machine do not lengthen.
 double seconds_of(std::function<void()> const& work) {
-    auto const start = std::chrono::steady_clock::now();
+    auto const start = std::clock();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 } // namespace

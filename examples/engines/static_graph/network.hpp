@@ -4,7 +4,6 @@
 
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/random.hpp>
-#include <genrender/core/strided_view.hpp>
 
 #include <array>
 #include <cmath>
@@ -46,6 +45,15 @@ struct small_unet {
         {{"down.attn1", network_kind::denoising, network_part::encoder, grid, channels},
          {"middle.attn1", network_kind::denoising, network_part::decoder, coarse, channels},
          {"up.attn1", network_kind::denoising, network_part::decoder, grid, channels}}};
+
+    /// All that have weights.
+    std::vector<layer_weights const*> layers() const {
+        std::vector<layer_weights const*> all{&first, &last};
+        for (auto const& b : blocks) {
+            all.insert(all.end(), {&b.query, &b.key, &b.value, &b.out, &b.widen, &b.narrow});
+        }
+        return all;
+    }
 
     /// What a noise level and a prompt add to every token [channels].
     static std::vector<float> shift(float sigma, std::uint32_t prompt) {
@@ -90,14 +98,5 @@ private:
         return w;
     }
 };
-
-/// Latents [frames, channels, height, width] that lie as tokens [frames, height * width, channels].
-inline strided_view<float, 4> channels_first(float* tokens, std::size_t frames) {
-    constexpr auto channels = std::ptrdiff_t{small_unet::latent_channels};
-    constexpr auto width = std::ptrdiff_t{small_unet::grid.width};
-    return {tokens,
-            {frames, small_unet::latent_channels, small_unet::grid.height, small_unet::grid.width},
-            {channels * width * std::ptrdiff_t{small_unet::grid.height}, 1, channels * width, channels}};
-}
 
 } // namespace genrender::examples

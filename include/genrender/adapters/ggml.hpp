@@ -1,212 +1,136 @@
 // SPDX-License-Identifier: MIT
-// ggml behind genrender: pieces of static graphs for self-attention by eqs. 3, 5 and 6, and memory that they read.
+// ggml behind genrender: graphs that are built once and run often, and a denoiser of them.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/adapters/ggml_memory.hpp>
+#include <genrender/adapters/ggml_site.hpp>
+#include <genrender/adapters/graph_denoiser.hpp>
+#include <genrender/adapters/graph_feature_io.hpp>
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/error.hpp>
-#include <genrender/injection/feature_io.hpp>
-#include <genrender/injection/graph_pass.hpp>
 #include <genrender/sampling/run_shapes.hpp>
 
+#include <ggml-alloc.h>
+#include <ggml-backend.h>
+#include <ggml-cpp.h>
 #include <ggml.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <mutex>
+#include <memory>
+#include <new>
 #include <span>
-#include <utility>
+#include <string>
 #include <vector>
 
 namespace genrender::adapters {
 
-/// One self-attention module of a graph under construction: what goes around the engine's own projections and attention.
-/// Features are tensors of ne = {channels, tokens, frames}. At a place that takes no part, and in a plain pass, every
-/// member gives back what it is given.
-class ggml_site {
+/// Where ggml graphs run, and how large they are.
+struct ggml_device {
+    ggml_backend_t backend;     ///< the caller's, which outlives all graphs
+    std::size_t nodes = 16'384; ///< at most so many operations and inputs in a graph
+};
+
+/// A ggml graph that is built once and run often. Memory of its values lasts from one run to the next, values do not:
+/// inputs are written before every run.
+class ggml_graph {
 public:
-    /// Of a pass for so many frames. `bank` and `plan` outlive the graph, null where the module is left plain.
-    ggml_site(graph_pass pass, run_shapes const& shapes, ggml_bank const* bank, ggml_plan const* plan)
-        : is_keyframe_(pass == graph_pass::keyframe && bank != nullptr),
-          joins_(pass == graph_pass::injected && bank != nullptr && shapes.joins_keyframes),
-          mixes_(pass == graph_pass::injected && bank != nullptr && shapes.mixes_rows),
-          attends_to_stack_(is_keyframe_ && shapes.attends_to_stack), bank_(bank), plan_(plan) {}
+    using device_type = ggml_device;         ///< where it runs
+    using tensor_type = ggml_tensor*;        ///< a value
+    using feature_io_type = ggml_feature_io; ///< what its modules read and write
 
-    /// The tokens that the module's queries are of: of f, or of its frames in a row (eq. 3: one long row of tokens that
-    /// all attend to each other is the same). The module's residual and all behind it take f itself.
-    ggml_tensor* queries(ggml_context* ctx, ggml_tensor* f) const {
-        return attends_to_stack_ ? ggml_reshape_3d(ctx, contiguous(ctx, f), f->ne[0], f->ne[1] * f->ne[2], 1) : f;
+    /// The fixed tensors of a run. Throws as ggml_feature_io does.
+    static std::unique_ptr<ggml_feature_io> make_feature_io(ggml_device device, run_shapes const& shapes,
+                                                            std::span<attention_site const> sites) {
+        return std::make_unique<ggml_feature_io>(device.backend, shapes, sites);
     }
 
-    /// The tokens that keys and values are of: those of `queries`, or each frame's own and then the keyframes' (eq. 5),
-    /// ne = {channels, tokens (1 + m), frames}.
-    ggml_tensor* sources(ggml_context* ctx, ggml_tensor* f) const {
-        return joins_ ? join(ctx, f, keyframes(ctx, f->type)) : queries(ctx, f);
-    }
-
-    /// f_KF in a row, ne = {channels, m tokens, 1}, for engines that project it once for all frames and `join` the
-    /// products; null where nothing is joined.
-    ggml_tensor* keyframes(ggml_context* ctx, ggml_type type) const {
-        if (!joins_) {
-            return nullptr;
+    /// One without nodes. `io` outlives it. Throws std::bad_alloc if there is no memory for its description.
+    ggml_graph(ggml_device device, ggml_feature_io& io, graph_key key) : device_(device), io_(&io), key_(key) {
+        auto const bytes = device.nodes * ggml_tensor_overhead() + ggml_graph_overhead_custom(device.nodes, false);
+        context_.reset(ggml_init({bytes, nullptr, true}));
+        if (!context_) {
+            throw std::bad_alloc();
         }
-        auto* const f_KF = bank_->f_KF;
-        auto* const row = ggml_reshape_3d(ctx, f_KF, f_KF->ne[0], f_KF->ne[1] * f_KF->ne[2], 1);
-        return row->type == type ? row : ggml_cast(ctx, row, type);
+        graph_ = ggml_new_graph_custom(context_.get(), device.nodes, false);
     }
 
-    /// Each frame's own tokens {channels, tokens, frames} and those of keyframes {channels, m tokens, 1} after them;
-    /// `own` itself where `of_keyframes` is null.
-    ggml_tensor* join(ggml_context* ctx, ggml_tensor* own, ggml_tensor* of_keyframes) const {
-        if (of_keyframes == nullptr) {
-            return own;
-        }
-        auto* const of_each = own->ne[2] == 1 ? of_keyframes
-                                              : ggml_repeat_4d(ctx, of_keyframes, of_keyframes->ne[0],
-                                                               of_keyframes->ne[1], own->ne[2], 1);
-        return ggml_concat(ctx, own, of_each, 1);
+    /// Which graph it is.
+    graph_key key() const { return key_; }
+    /// What new tensors are made in.
+    ggml_context* context() const { return context_.get(); }
+    /// The graph itself.
+    ggml_cgraph* graph() const { return graph_; }
+
+    /// The self-attention module of a site, whose pieces go around the engine's own.
+    ggml_site site(site_index index) { return io_->site({index, key_.branch}, key_.pass, key_.frames); }
+
+    /// An F32 input of a row-major shape of at most 4 axes: ne has them the other way round. Throws value_error if there
+    /// are more.
+    ggml_tensor* add_input(std::string const& name, std::vector<std::size_t> const& shape) {
+        require_value(!shape.empty() && shape.size() <= GGML_MAX_DIMS, "ggml_graph::add_input", "shape.size()",
+                      shape.size(), "1 to 4 axes");
+        std::array<std::int64_t, GGML_MAX_DIMS> ne{1, 1, 1, 1};
+        std::transform(shape.rbegin(), shape.rend(), ne.begin(), [](auto n) { return static_cast<std::int64_t>(n); });
+        auto* const input = ggml_new_tensor(context_.get(), GGML_TYPE_F32, static_cast<int>(shape.size()), ne.data());
+        ggml_set_name(input, name.c_str());
+        ggml_set_input(input);
+        ggml_build_forward_expand(graph_, input); // has memory even if nothing reads it
+        return input;
     }
 
-    /// What is added to the scaled products of queries and keys, F32 {tokens (1 + m), 1, 1, frames}: minus infinity for
-    /// the keyframe that a frame leaves out, 0 else; null where nothing is left out.
-    ggml_tensor* mask() const { return joins_ ? plan_->mask : nullptr; }
-
-    /// The module's output {channels, tokens, frames} of what attention over `queries` and `sources` gave (behind the
-    /// projection of the output, if there is one, and before the residual): recorded in a keyframe pass, mixed by eq. 6
-    /// in an injected one. `f` is the module's input. Expands `graph` by what nobody else would ask for.
-    ggml_tensor* output(ggml_context* ctx, ggml_cgraph* graph, ggml_tensor* f, ggml_tensor* F_hat) const {
-        if (is_keyframe_) {
-            auto* const F = ggml_reshape_3d(ctx, contiguous(ctx, F_hat), f->ne[0], f->ne[1], f->ne[2]);
-            ggml_build_forward_expand(graph, ggml_cpy(ctx, f, bank_->f_KF));
-            ggml_build_forward_expand(graph, ggml_cpy(ctx, F, bank_->F_KF));
-            return F;
+    /// Ends the graph and has memory allocated for it. Throws std::bad_alloc if the backend has none.
+    void finish(ggml_tensor* output) {
+        output = output->type == GGML_TYPE_F32 ? output : ggml_cast(context_.get(), output, GGML_TYPE_F32);
+        output_ = ggml_is_contiguous(output) ? output : ggml_cont(context_.get(), output);
+        keep_output(output_);
+        ggml_build_forward_expand(graph_, output_);
+        memory_.reset(ggml_gallocr_new(ggml_backend_get_default_buffer_type(device_.backend)));
+        if (!memory_ || !ggml_gallocr_alloc_graph(memory_.get(), graph_)) {
+            throw std::bad_alloc();
         }
-        return mixes_ ? mixed(ctx, F_hat) : F_hat;
+    }
+
+    /// Writes an input, row-major; of the finished graph, before every run. Throws value_error if there is none of that
+    /// name or of so many numbers.
+    void write(std::string const& name, std::span<float const> values) {
+        auto* const input = ggml_get_tensor(context_.get(), name.c_str());
+        require_value(input != nullptr, "ggml_graph::write", "name", name, "an input of the graph");
+        require_value(values.size_bytes() == ggml_nbytes(input), "ggml_graph::write", (name + ".size()").c_str(),
+                      values.size(), std::to_string(ggml_nelements(input)).c_str());
+        ggml_backend_tensor_set(input, values.data(), 0, values.size_bytes());
+    }
+
+    /// Runs it. Throws value_error with ggml's status if it fails.
+    void run() {
+        auto const status = ggml_backend_graph_compute(device_.backend, graph_);
+        require_value(status == GGML_STATUS_SUCCESS, "ggml_graph::run", "status", ggml_status_to_string(status),
+                      "success");
+    }
+
+    /// Copies the output, row-major. Throws value_error if it has not so many numbers.
+    void read(std::span<float> values) const {
+        require_value(values.size_bytes() == ggml_nbytes(output_), "ggml_graph::read", "output.size()",
+                      ggml_nelements(output_), std::to_string(values.size()).c_str());
+        ggml_backend_tensor_get(output_, values.data(), 0, values.size_bytes());
     }
 
 private:
-    static ggml_tensor* contiguous(ggml_context* ctx, ggml_tensor* t) {
-        return ggml_is_contiguous(t) ? t : ggml_cont(ctx, t);
-    }
-
-    /// One gather a column of the padded rows: every backend has these operations.
-    ggml_tensor* mixed(ggml_context* ctx, ggml_tensor* F_hat) const {
-        auto* const F_KF = bank_->F_KF;
-        auto* const rows = ggml_reshape_2d(ctx, F_KF, F_KF->ne[0], F_KF->ne[1] * F_KF->ne[2]);
-        auto const count = plan_->own->ne[1];
-        auto* F = ggml_mul(ctx, ggml_reshape_2d(ctx, contiguous(ctx, F_hat), F_hat->ne[0], count), plan_->own);
-        for (std::int64_t w = 0; w < plan_->index->ne[1]; ++w) {
-            auto const column = static_cast<std::size_t>(w);
-            auto* const index = ggml_view_1d(ctx, plan_->index, count, column * plan_->index->nb[1]);
-            auto* const weights =
-                ggml_view_2d(ctx, plan_->weights, 1, count, plan_->weights->nb[1], column * plan_->weights->nb[2]);
-            F = ggml_add(ctx, F, ggml_mul(ctx, ggml_get_rows(ctx, rows, index), weights));
-        }
-        return ggml_reshape_3d(ctx, F, F_hat->ne[0], F_hat->ne[1], F_hat->ne[2]);
-    }
-
-    bool is_keyframe_;
-    bool joins_;
-    bool mixes_;
-    bool attends_to_stack_;
-    ggml_bank const* bank_;
-    ggml_plan const* plan_;
+    ggml_device device_;
+    ggml_feature_io* io_;
+    graph_key key_;
+    ggml_context_ptr context_;
+    ggml_gallocr_ptr memory_;
+    ggml_cgraph* graph_ = nullptr;
+    ggml_tensor* output_ = nullptr;
 };
 
-/// Everything between a feature_io_processor and the graphs of an engine: features of keyframes and plans in memory of its
-/// own on the backend, which the graphs read and write without a copy. No allocator of graphs reuses that memory, so a
-/// plan is uploaded once for all branches and as long as its key stays. Make one in `prepare`; graphs are built once for
-/// each pass, number of frames and branch, and must not outlive it. It is used by one call at a time (`lock`).
-class ggml_feature_io {
-public:
-    /// For the shapes of a run and the denoiser's sites. The backend is the caller's and outlives it. Throws value_error
-    /// if the run asks for sources beyond eqs. 1, 3 and 5, or keeps several banks at a time; std::bad_alloc if the
-    /// backend has no memory.
-    ggml_feature_io(ggml_backend_t backend, run_shapes shapes, std::span<attention_site const> sites)
-        : backend_(backend), shapes_(std::move(shapes)), sites_(sites.begin(), sites.end()) {
-        constexpr auto here = "ggml_feature_io";
-        require_value(!shapes_.lists_sources, here, "shapes.lists_sources", "true", "a method that lists no sources");
-        require_abilities(here, {}, shapes_);
-        require_value(shapes_.banks == 1, here, "shapes.banks", shapes_.banks, "one bank at a time");
-        for (auto const place : shapes_.places) {
-            require_value(place.site.value < sites_.size(), here, "shapes.places", place.site.value, "a site");
-            auto const& site = sites_[place.site.value];
-            banks_.try_emplace(place, backend, site.channels, site.grid.size(), shapes_.keyframes, shapes_.storage);
-        }
-    }
-
-    /// Held during a call of the denoiser from before `pass_of` to after `record`.
-    [[nodiscard]] std::unique_lock<std::mutex> lock() const { return std::unique_lock(mutex_); }
-
-    /// Which pass a processor runs: the one whose graph the call takes.
-    template <class Processor>
-    graph_pass pass_of(Processor const& processor, std::span<frame_index const> frames) const {
-        return graph_pass_of<ggml_features, float>(processor, shapes_, frames);
-    }
-
-    /// The module at a place, for building a graph of a pass with so many frames.
-    ggml_site site(attention_place place, graph_pass pass, std::size_t frames) {
-        auto const bank = banks_.find(place);
-        if (bank == banks_.end()) {
-            return ggml_site(pass, shapes_, nullptr, nullptr);
-        }
-        auto* const plan = pass == graph_pass::injected ? &plan_of(place.site, frames) : nullptr;
-        return ggml_site(pass, shapes_, &bank->second, plan);
-    }
-
-    /// Before the graph of a pass and branch runs: uploads what the processor gives its modules. Throws value_error if
-    /// that is not what the shapes said, or a row has more entries than shapes.row_width.
-    template <class Processor>
-    void write(Processor const& processor, graph_pass pass, std::uint32_t branch, std::span<frame_index const> frames) {
-        for (auto const& [place, bank] : banks_) {
-            if (place.branch != branch) {
-                continue;
-            }
-            auto const in = inputs_at<ggml_features, float>(processor, place, frames);
-            require_inputs(in, pass, shapes_, frames);
-            auto const is_ours = (in.f_KF == nullptr || in.f_KF->tensor == bank.f_KF) &&
-                                 (in.F_KF == nullptr || in.F_KF->tensor == bank.F_KF);
-            require_value(is_ours, "ggml_feature_io::write", "inputs", "features of another memory",
-                          "those that `record` handed over");
-            if (in.f_KF != nullptr) {
-                plan_of(place.site, frames.size()).write_mask(in.left_out);
-            }
-            if (in.F_KF != nullptr) {
-                plan_of(place.site, frames.size()).write_rows(in.rows, in.alpha);
-            }
-        }
-    }
-
-    /// After the graph of a pass and branch has run: hands the recorded features over where the processor asks for them.
-    template <class Processor>
-    void record(Processor const& processor, std::uint32_t branch, std::span<frame_index const> frames) const {
-        for (auto const& [place, bank] : banks_) {
-            if (place.branch == branch && inputs_at<ggml_features, float>(processor, place, frames).is_recorded) {
-                record_features(processor, place, ggml_features{bank.f_KF}, ggml_features{bank.F_KF});
-            }
-        }
-    }
-
-private:
-    ggml_plan& plan_of(site_index site, std::size_t frames) {
-        auto const key = std::pair(site, frames);
-        auto const found = plans_.find(key);
-        if (found != plans_.end()) {
-            return found->second;
-        }
-        return plans_.try_emplace(key, backend_, frames, sites_[site.value].grid.size(), shapes_).first->second;
-    }
-
-    ggml_backend_t backend_;
-    run_shapes shapes_;
-    std::vector<attention_site> sites_;
-    std::map<attention_place, ggml_bank> banks_;
-    std::map<std::pair<site_index, std::size_t>, ggml_plan> plans_;
-    mutable std::mutex mutex_;
-};
+/// A denoiser of ggml graphs.
+using ggml_denoiser = graph_denoiser<ggml_graph>;
 
 } // namespace genrender::adapters
 

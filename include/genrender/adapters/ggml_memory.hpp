@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/padded_rows.hpp>
 #include <genrender/core/error.hpp>
@@ -49,6 +50,8 @@ inline ggml_type ggml_type_of(feature_storage storage) {
 /// Features of a place, as a handle to memory that a ggml_feature_io keeps.
 struct ggml_features {
     ggml_tensor* tensor = nullptr; ///< ne = {channels, tokens, frames}; not owned
+    /// Whether both are the same tensor.
+    friend bool operator==(ggml_features, ggml_features) = default;
     /// {frames, tokens, channels}; zeros of no tensor.
     std::array<std::size_t, 3> extents() const {
         if (tensor == nullptr) {
@@ -196,6 +199,23 @@ private:
     uploaded_rows<float> last_;
     std::vector<std::optional<std::size_t>> left_out_;
     std::size_t uploads_ = 0;
+};
+
+/// Makes the tensors of a graph_feature_io on a backend, which is the caller's and outlives them.
+struct ggml_memory {
+    using features_type = ggml_features; ///< a handle
+    using bank_type = ggml_bank;         ///< f_KF and F_KF
+    using plan_type = ggml_plan;         ///< rows and masks
+    ggml_backend_t backend;              ///< whose memory it is
+
+    /// Features of the keyframes of a site. Throws std::bad_alloc if the backend has no memory.
+    ggml_bank bank(attention_site const& site, run_shapes const& shapes) const {
+        return {backend, site.channels, site.grid.size(), shapes.keyframes, shapes.storage};
+    }
+    /// Plans of a stack of frames of so many tokens. Throws std::bad_alloc if the backend has no memory.
+    ggml_plan plan(std::size_t frames, std::size_t tokens, run_shapes const& shapes) const {
+        return {backend, frames, tokens, shapes};
+    }
 };
 
 } // namespace genrender::adapters

@@ -4,6 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
+#include <genrender/attention/attention_site.hpp>
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/padded_rows.hpp>
 #include <genrender/core/error.hpp>
@@ -39,6 +40,10 @@ inline ov::element::Type openvino_type_of(feature_storage storage) {
 /// Features of a place, as a handle to memory that an openvino_feature_io keeps.
 struct openvino_features {
     ov::Tensor tensor; ///< [frames, tokens, channels]
+    /// Whether both are the same memory.
+    friend bool operator==(openvino_features const& a, openvino_features const& b) {
+        return a.tensor && b.tensor ? a.tensor.data() == b.tensor.data() : !a.tensor && !b.tensor;
+    }
     /// {frames, tokens, channels}; zeros of no tensor.
     std::array<std::size_t, 3> extents() const {
         std::array<std::size_t, 3> extents{};
@@ -114,6 +119,24 @@ private:
     std::size_t tokens_;
     uploaded_rows<float> last_;
     std::size_t writes_ = 0;
+};
+
+/// Makes the tensors of a graph_feature_io in host memory.
+struct openvino_memory {
+    using features_type = openvino_features; ///< a handle
+    using bank_type = openvino_bank;         ///< f_KF and F_KF
+    using plan_type = openvino_plan;         ///< rows and masks
+
+    /// Features of the keyframes of a site.
+    openvino_bank bank(attention_site const& site, run_shapes const& shapes) const {
+        ov::Shape const shape{shapes.keyframes, site.grid.size(), site.channels};
+        auto const type = openvino_type_of(shapes.storage);
+        return {ov::Tensor(type, shape), ov::Tensor(type, shape)};
+    }
+    /// Plans of a stack of frames of so many tokens.
+    openvino_plan plan(std::size_t frames, std::size_t tokens, run_shapes const& shapes) const {
+        return {frames, tokens, shapes};
+    }
 };
 
 } // namespace genrender::adapters

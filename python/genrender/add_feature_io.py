@@ -2,11 +2,11 @@
 """Adds the extra inputs and outputs of feature I/O to a UNet that diffusers' classes were exported from by torch.onnx.export
 (dynamo=False, static shapes): one file a pass, for ONNX Runtime and OpenVINO.
 
-    python add_feature_io.py unet.onnx injected.onnx --pass injected --keyframes 3 --width 3 [--sites up_blocks]
+    python -m genrender.add_feature_io unet.onnx injected.onnx --pass injected --keyframes 3 --width 3 [--sites up_blocks]
 
 The file must be of batches of the pass's number of frames. Self-attention modules are found by the names of their nodes
 (attn1) and numbered in the order in which they run; those whose name holds --sites take part. Tensors are named
-genrender.<number>.<what>, as genrender/adapters/openvino.hpp names them:
+genrender.<number>.<what>, as genrender/adapters/openvino_site.hpp names them; genrender.graphs writes and reads them:
 
     keyframe   outputs f, F [frames, tokens, channels]; attention over the whole stack (eq. 3)
     injected   inputs f_KF, F_KF [keyframes, tokens, channels] (eqs. 5, 6); index int32 [frames tokens, width], weights

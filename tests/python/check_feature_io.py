@@ -18,7 +18,12 @@ import onnxruntime
 import torch
 from diffusers import UNet2DConditionModel
 
-from add_feature_io import add_feature_io
+# By its path: the package's module in C++ is not needed, and its folder has a file called diffusers.py.
+spec = importlib.util.spec_from_file_location(
+    "add_feature_io", Path(__file__).resolve().parents[2] / "python" / "genrender" / "add_feature_io.py")
+add_feature_io = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(add_feature_io)
+add_feature_io = add_feature_io.add_feature_io
 
 warnings.filterwarnings("ignore")  # torch.onnx warns of every constant of the traced network
 m, frames, width, alpha = 3, 2, 3, 0.6
