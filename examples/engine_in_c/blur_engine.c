@@ -63,6 +63,7 @@ static genrender_features* attend(void* context, genrender_call const* call, gen
     (void)context;
     (void)call;
     for (size_t i = 0; F != NULL && i < sources.frames; ++i) {
+        float const scale = sources.scales != NULL ? sources.scales[i] : 1.0f;
         for (size_t t = 0; t < tokens; ++t) {
             float const* q = token_of(Q, i, t);
             float* out = F->values + (i * tokens + t) * channels;
@@ -77,7 +78,7 @@ static genrender_features* attend(void* context, genrender_call const* call, gen
                         logit += q[c] * k[c];
                     }
                     // Features are a few units at most, so that nothing overflows.
-                    float const weight = expf(logit / sqrtf((float)channels));
+                    float const weight = expf(scale * logit / sqrtf((float)channels));
                     sum += weight;
                     for (size_t c = 0; c < channels; ++c) {
                         out[c] += weight * v[c];
@@ -175,6 +176,7 @@ genrender_engine const* ENGINE_FUNCTION(void) {
                                             copy_of,
                                             copy_of,
                                             attend,
-                                            mix};
+                                            mix,
+                                            1};
     return &engine;
 }

@@ -173,6 +173,20 @@ TEST_SUITE("c/engine_denoiser") {
         for (auto const* const engine : {engine_of_c11(), engine_of_cxx11()}) {
             CHECK(c_difference(c_frames(engine_denoiser(*engine)), expected) < 1e-5f);
         }
+        // And so does one that scales logits; a copy of its table that does not say so is refused.
+        auto scaled = few_c_steps();
+        scaled.injection.length_correction = 4;
+        auto const of_scaled = c_frames(phi, scaled);
+        CHECK(c_difference(of_scaled, expected) > 1e-4f);
+        for (auto const* const engine : {engine_of_c11(), engine_of_cxx11()}) {
+            CHECK(c_difference(c_frames(engine_denoiser(*engine), scaled), of_scaled) < 1e-5f);
+            auto without = *engine;
+            without.scales_logits = 0;
+            CHECK_THROWS_WITH_AS(c_frames(engine_denoiser(without), scaled),
+                                 "engine_call: logits are scaled, expected a length_correction of 0 for an engine "
+                                 "without scales_logits",
+                                 value_error);
+        }
     }
     TEST_CASE("an engine of C keeps the laws of denoiser and of attention_call") {
         engine_denoiser const phi(*engine_of_c11());
@@ -189,6 +203,12 @@ TEST_SUITE("c/engine_denoiser") {
             auto const found = render(engine_denoiser(engine), to_uv_view(maps), {.settings = settings}).z;
             CHECK(c_difference(found, expected) < 1e-5f);
         }
+        CHECK(graph_stack::alive == 0);
+        settings.injection.length_correction = 1;
+        CHECK_THROWS_WITH_AS(c_frames(engine_denoiser(engine), settings),
+                             "inputs_at: logits are scaled, expected a length_correction of 0 for an engine whose "
+                             "graph_abilities do not say scales_logits",
+                             value_error);
         CHECK(graph_stack::alive == 0);
     }
     TEST_CASE("what an engine says of its failure is what the run says") {
