@@ -55,7 +55,9 @@ bool run_sampler(Phi const& phi, Denoise const& D, latents<Real>& z, std::vector
         follow(last, [&](auto const& after_step) { sample(sampler, D, last, sigmas, after_step); });
         last.download(to_view(z));
     } else {
-        follow(z, [&](auto const& after_step) { detail::sample_latents<Real>(sampler, std::cref(D), z, sigmas, after_step); });
+        follow(z, [&](auto const& after_step) {
+            detail::sample_latents<Real>(sampler, std::cref(D), z, sigmas, after_step);
+        });
     }
     return is_cancelled;
 }
