@@ -32,12 +32,12 @@ TEST_SUITE("noise/noise_request") {
                     }
                     requests[n].pixel = n;
                 }
-                auto const child = [](auto const& request) { return detail::child_of(request, 9); };
+                auto const child = [](auto const& request) { return genrender::detail::child_of(request, 9); };
                 auto expected = requests;
                 std::stable_sort(expected.begin(), expected.end(),
                                  [&](auto const& a, auto const& b) { return child(a) < child(b); });
                 std::vector<noise_request<d>> sorted(count);
-                auto const begins = detail::sort_by_child(std::span(sorted), requests, 9);
+                auto const begins = genrender::detail::sort_by_child(std::span(sorted), requests, 9);
                 CHECK(std::equal(sorted.begin(), sorted.end(), expected.begin(),
                                  [](auto const& a, auto const& b) { return a.pixel == b.pixel; }));
                 CHECK(begins[0] == 0);

@@ -10,7 +10,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <string>
 
 namespace genrender {
 
@@ -39,20 +38,21 @@ struct consensus_settings {
 /// Throws value_error for settings that no run of `steps` steps could honour, in the name of `function`.
 template <class Real>
 void require_consensus_settings(char const* function, consensus_settings<Real> const& settings, std::size_t steps) {
-    auto const require = [&](bool holds, char const* member, auto const& value, char const* expected) {
-        require_value(holds, function, (std::string("settings.consensus.") + member).c_str(), value, expected);
+    auto const require = [&](bool holds, char const* argument, auto const& value, char const* expected) {
+        require_value(holds, function, argument, value, expected);
     };
     require(settings.window_begin >= 0 && settings.window_begin <= settings.window_end && settings.window_end <= 1,
-            "window_end", settings.window_end, "0 <= window_begin <= window_end <= 1");
-    require(settings.strength != nullptr, "strength", "empty", "a function");
+            "settings.consensus.window_end", settings.window_end, "0 <= window_begin <= window_end <= 1");
+    require(settings.strength != nullptr, "settings.consensus.strength", "empty", "a function");
     for (std::size_t step = 0; settings.enabled && step < steps; ++step) {
         auto const strength = settings.strength(step);
-        require(strength >= 0 && strength <= 1, "strength", strength, "shares in [0, 1]");
+        require(strength >= 0 && strength <= 1, "settings.consensus.strength", strength, "shares in [0, 1]");
     }
-    require(settings.first_fill_share >= 0 && settings.first_fill_share <= 1, "first_fill_share",
+    require(settings.first_fill_share >= 0 && settings.first_fill_share <= 1, "settings.consensus.first_fill_share",
             settings.first_fill_share, "a share in [0, 1]");
-    require(settings.most_gain >= 1, "most_gain", settings.most_gain, "a factor of at least 1");
-    require(settings.sources.count >= 1, "sources.count", settings.sources.count, "at least one frame");
+    require(settings.most_gain >= 1, "settings.consensus.most_gain", settings.most_gain, "a factor of at least 1");
+    require(settings.sources.count >= 1, "settings.consensus.sources.count", settings.sources.count,
+            "at least one frame");
 }
 
 } // namespace genrender

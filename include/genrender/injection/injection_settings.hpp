@@ -25,7 +25,7 @@ struct injection_settings {
     /// Whether the keys of eqs. 3 and 5 that show one surface point count together for one (point_counts): -log of their
     /// number is added to their logits. Needs correspondences with pre-attention alone, too.
     bool counts_points = false;
-    kept_variance variance; ///< the variance that eq. 6 keeps; the default is eq. 6 as the paper has it
+    kept_variance variance{}; ///< the variance that eq. 6 keeps; the default is eq. 6 as the paper has it
 };
 
 } // namespace genrender
