@@ -52,7 +52,7 @@ foreach(engine IN LISTS ENGINES)
     message(STATUS "${engine}: configuring")
     execute_process(COMMAND ${CMAKE_COMMAND} -S ${here}/${engine} -B ${build} -G Ninja ${options}
         RESULT_VARIABLE code OUTPUT_VARIABLE said ERROR_VARIABLE said)
-    if(code AND said MATCHES "skipped: ([^\n]*\n?[^\n]*)\n")
+    if(code AND said MATCHES "skipped: ([^\n]*(\n  [^\n ][^\n]*)*)")
         string(REGEX REPLACE "[ \n]+" " " sentence "${CMAKE_MATCH_1}")
         string(APPEND skipped "skipped: ${engine}: ${sentence}\n")
         continue()
