@@ -37,8 +37,7 @@ struct keyframe_settings {
 /// frames than keyframes are drawn from a `stream` of their own. Throws value_error if no keyframe is asked for, more
 /// than there are frames, or fixed ones repeat or do not exist.
 inline std::vector<frame_index> draw_keyframes(keyframe_settings const& settings, std::size_t frame_count,
-                                               std::size_t step,
-                                               random_stream stream = random_stream::keyframes) {
+                                               std::size_t step, random_stream stream = random_stream::keyframes) {
     if (settings.drawing == keyframe_drawing::fixed) {
         require_value(!settings.frames.empty(), "draw_keyframes", "frames", "empty", "at least one keyframe");
         std::set<frame_index> seen;
