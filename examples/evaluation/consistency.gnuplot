@@ -16,8 +16,11 @@ set multiplot layout 1, 2
 set title "measured here (embedder of the miniature; mean and standard error)"
 set ylabel "frame consistency"
 # Gen1 is proprietary: its figures are quoted, not measured.
-plot for [i = 1:5] data using 2:(strcol(1) eq word(methods, i) ? $3 : NaN):4 skip 1 \
-    with yerrorlines lw 2 pt 7 lc rgb colours[i] title word(methods, i)
+# A single run has no standard error.
+plot for [i = 1:5] data using 2:(strcol(1) eq word(methods, i) ? $3 : NaN) skip 1 \
+    with linespoints lw 2 pt 7 lc rgb colours[i] title word(methods, i), \
+    for [i = 1:5] data using 2:(strcol(1) eq word(methods, i) ? $3 : NaN):4 skip 1 \
+    with yerrorbars lw 2 pt 7 lc rgb colours[i] notitle
 set title "the paper (CLIP)"
 plot for [i in "1 2 3 4 6"] data using 2:(strcol(1) eq word(methods, int(i)) ? $5 : NaN) skip 1 \
     with linespoints lw 2 pt 7 lc rgb colours[int(i)] title word(methods, int(i))

@@ -48,8 +48,8 @@ TEST_SUITE("evaluation_program/settings_text") {
             [](auto& x) { x.layers = [](attention_site const&, std::uint32_t branch) { return branch == 1; }; }};
         std::map<std::string, std::size_t> texts;
         for (std::size_t k = 0; k < changes.size(); ++k) {
-            auto const [found, is_new] = texts.try_emplace(text_of_change(changes[k]), k);
-            CHECK_MESSAGE(is_new, "changes " << k << " and " << found->second);
+            auto const place = texts.try_emplace(text_of_change(changes[k]), k);
+            CHECK_MESSAGE(place.second, "changes " << k << " and " << place.first->second);
         }
     }
 

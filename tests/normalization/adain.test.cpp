@@ -467,12 +467,12 @@ TEST_SUITE("normalization/adain") {
             }
             return std::pair(least, most - least);
         };
-        auto const [darkest, contrast] = of_ball(z);
+        auto const before = of_ball(z); // darkest value, contrast
         auto const after = [&](adain_settings<double> const& settings) {
             auto changed = z;
             CHECK(normalize_latents(changed.view(), std::as_const(background).view(), settings).empty());
             auto const [dark, apart] = of_ball(changed);
-            return std::pair(darkest - dark, apart / contrast);
+            return std::pair(before.first - dark, apart / before.second);
         };
         auto const burnt = after({.statistics = as_the_paper});
         CHECK(burnt.first > 100);
