@@ -60,39 +60,10 @@ inline row_settings settings_of(compared_row const& row, shared_settings const& 
 
 // Presets.
 
-namespace detail {
-
-/// The paper's settings to the letter: texels of features and of noise, T matched to the maps, mean and deviation.
-template <class Settings>
-Settings paper_of() {
-    if constexpr (requires { Settings::paper(); }) {
-        return Settings::paper();
-    } else {
-        Settings settings;
-        settings.correspondence.kind = correspondence_kind::texel_grid;
-        settings.noise.reading = noise_reading::nearest_texel;
-        settings.average = texel_average::plain;
-        settings.normalization.statistics = adain_statistics::mean_and_deviation;
-        return settings;
-    }
-}
-
-/// What measured best; the default.
-template <class Settings>
-Settings vivid_of() {
-    if constexpr (requires { Settings::vivid(); }) {
-        return Settings::vivid();
-    } else {
-        return {};
-    }
-}
-
-} // namespace detail
-
 /// The paper to the letter.
-inline row_settings paper() { return detail::paper_of<row_settings>(); }
+inline row_settings paper() { return row_settings::paper(); }
 /// Consistent and vivid.
-inline row_settings vivid() { return detail::vivid_of<row_settings>(); }
+inline row_settings vivid() { return row_settings::vivid(); }
 /// Per-Frame with independent noise, as the paper has it.
 inline row_settings alone() { return per_frame(paper()); }
 /// Per-Frame with one noise for all frames.
@@ -105,6 +76,13 @@ inline row_settings baseline_fixed() { return baseline_settings(paper()); }
 inline row_settings baseline_uv() {
     auto settings = baseline_settings(paper(), noise_kind::uv);
     settings.noise.reading = vivid().noise.reading;
+    return settings;
+}
+
+/// The same with the temperature that vivid has.
+inline row_settings baseline_uv_corrected() {
+    auto settings = baseline_uv();
+    settings.injection.length_correction = vivid().injection.length_correction;
     return settings;
 }
 
@@ -145,6 +123,8 @@ inline std::vector<compared_row> compared_rows() {
         {"Pix2Video*, UV noise", "method", pix2video, baseline_uv},
         {"TokenFlow*, fixed noise", "method", tokenflow, baseline_fixed},
         {"TokenFlow*, UV noise", "method", tokenflow, baseline_uv},
+        {"Pix2Video*, UV noise, temperature", "method", pix2video, baseline_uv_corrected},
+        {"TokenFlow*, UV noise, temperature", "method", tokenflow, baseline_uv_corrected},
         {"paper", "method", generative_rendering, paper},
         {"vivid", "method", generative_rendering, vivid},
 
@@ -155,6 +135,9 @@ inline std::vector<compared_row> compared_rows() {
         {"paper, independent noise", "ablation", generative_rendering, paper, [](s& x) { x.noise.kind = noise_kind::independent; }},
         {"vivid, no pre-attention", "ablation", generative_rendering, vivid, [](s& x) { x.injection.pre_attention = false; }},
         {"vivid, no post-attention", "ablation", generative_rendering, vivid, [](s& x) { x.injection.post_attention = false; }},
+        {"vivid, no consensus", "ablation", generative_rendering, vivid, [](s& x) { x.consensus.enabled = false; }},
+        {"vivid, no temperature", "ablation", generative_rendering, vivid, [](s& x) { x.injection.length_correction = 0; }},
+        {"vivid, variance not kept", "ablation", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::none; }},
         {"vivid, no normalisation", "ablation", generative_rendering, vivid, [](s& x) { x.normalization.enabled = false; }},
         {"vivid, fixed noise", "ablation", generative_rendering, vivid, [](s& x) { x.noise.kind = noise_kind::fixed; }},
         {"vivid, plain average", "ablation", generative_rendering, vivid, [](s& x) { x.average = texel_average::plain; }},
@@ -176,6 +159,20 @@ inline std::vector<compared_row> compared_rows() {
         {"vivid, features by texels, T = 4096", "texels", generative_rendering, vivid, texels_of<4096>},
         {"vivid, features by texels, T matched", "texels", generative_rendering, vivid, texels_of<0>},
 
+        {"no consensus", "development", generative_rendering, vivid, [](s& x) { x.consensus.enabled = false; }},
+        {"no temperature", "development", generative_rendering, vivid, [](s& x) { x.injection.length_correction = 0; }},
+        {"variance not kept", "development", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::none; }},
+        {"variance total", "development", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::total; }},
+        {"none of the three", "development", generative_rendering, vivid, [](s& x) { x.consensus.enabled = false; x.injection.length_correction = 0; x.injection.variance.target = variance_target::none; }},
+        {"consensus in all steps", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 1; }},
+        {"consensus in the first 30 %", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 0.3F; }},
+        {"consensus to the silhouettes", "development", generative_rendering, vivid, [](s& x) { x.consensus.fades_at_silhouettes = false; }},
+        {"consensus without variance", "development", generative_rendering, vivid, [](s& x) { x.consensus.most_gain = 1; }},
+        {"points counted", "development", generative_rendering, vivid, [](s& x) { x.injection.counts_points = true; }},
+        {"quality to the power 0 to 6", "development", generative_rendering, vivid, [](s& x) { x.quality.exponent_begin = 0; x.quality.exponent_end = 6; }},
+        {"held keyframes", "development", generative_rendering, vivid, [](s& x) { x.keyframes.drawing = keyframe_drawing::held; }},
+        {"means of all frames", "development", generative_rendering, vivid, [](s& x) { x.normalization.target = adain_target::all_frames; }},
+        {"supported deviations", "development", generative_rendering, vivid, [](s& x) { x.normalization.statistics = adain_statistics::mean_and_supported_deviation; }},
         {"no post-attention", "development", generative_rendering, vivid, [](s& x) { x.injection.post_attention = false; }},
         {"no own copy", "development", generative_rendering, vivid, [](s& x) { x.injection.keeps_own_copy = false; }},
         {"one keyframe", "development", generative_rendering, vivid, [](s& x) { x.keyframes.count = 1; }},

@@ -65,9 +65,9 @@ private:
 inline std::string settings_text(row_settings const& settings, std::vector<attention_site> const& sites,
                                  std::uint32_t branches) {
     detail::settings_writer write;
-    auto const& [steps, sigma_min, sigma_max, rho, sampler, noise, keyframes, correspondence, normalization, layers,
-                 alpha, injection, first_fill_share, average, window_begin, window_end, keyframe_storage,
-                 reuses_keyframes, frames_per_call, fills_last_call, calls_at_once] = settings;
+    auto const& [steps, sigma_min, sigma_max, rho, sampler, noise, keyframes, correspondence, consensus, normalization,
+                 layers, alpha, injection, first_fill_share, average, quality, window_begin, window_end,
+                 keyframe_storage, reuses_keyframes, frames_per_call, fills_last_call, calls_at_once] = settings;
     static_cast<void>(reuses_keyframes); // frames are the same to the bit
     static_cast<void>(frames_per_call);
     static_cast<void>(fills_last_call);
@@ -111,9 +111,41 @@ inline std::string settings_text(row_settings const& settings, std::vector<atten
         write("correspondence.texels.dilation", dilation);
     }
     {
-        auto const& [enabled, statistics, begin, end, least_pixels, fallback, on_noisy_latents] = normalization;
+        auto const& [enabled, begin, end, strength, sources, first_fill, sources_average, most_gain, fades] = consensus;
+        auto const& [count, drawing, frames, seed] = sources;
+        write("consensus.enabled", enabled);
+        write("consensus.window_begin", begin);
+        write("consensus.window_end", end);
+        std::vector<float> strengths;
+        for (std::size_t step = 0; step < steps; ++step) {
+            strengths.push_back(strength(step));
+        }
+        write("consensus.strength", strengths);
+        write("consensus.sources.count", count);
+        write("consensus.sources.drawing", drawing);
+        write("consensus.sources.frames", frames);
+        write("consensus.sources.seed", seed);
+        write("consensus.first_fill_share", first_fill);
+        write("consensus.average", sources_average);
+        write("consensus.most_gain", most_gain);
+        write("consensus.fades_at_silhouettes", fades);
+    }
+    {
+        auto const& [exponent_begin, exponent_end, threshold] = quality;
+        write("quality.exponent_begin", exponent_begin);
+        write("quality.exponent_end", exponent_end);
+        write("quality.threshold", threshold);
+    }
+    {
+        auto const& [enabled, statistics, target, begin, end, least_pixels, fallback, on_noisy_latents,
+                     enough_background, standard_errors, most_gain, band_levels] = normalization;
         write("normalization.enabled", enabled);
         write("normalization.statistics", statistics);
+        write("normalization.target", target);
+        write("normalization.enough_background", enough_background);
+        write("normalization.standard_errors", standard_errors);
+        write("normalization.most_gain", most_gain);
+        write("normalization.band_levels", band_levels);
         write("normalization.window_begin", begin);
         write("normalization.window_end", end);
         write("normalization.least_pixels", least_pixels);
@@ -121,7 +153,12 @@ inline std::string settings_text(row_settings const& settings, std::vector<atten
         write("normalization.on_noisy_latents", on_noisy_latents);
     }
     {
-        auto const& [pre_attention, post_attention, keeps_own_copy] = injection;
+        auto const& [pre_attention, post_attention, keeps_own_copy, length_correction, counts_points, variance] =
+            injection;
+        write("injection.length_correction", length_correction);
+        write("injection.counts_points", counts_points);
+        write("injection.variance.target", variance.target);
+        write("injection.variance.most_gain", variance.most_gain);
         write("injection.pre_attention", pre_attention);
         write("injection.post_attention", post_attention);
         write("injection.keeps_own_copy", keeps_own_copy);

@@ -86,13 +86,13 @@ struct render_settings {
         return settings;
     }
 
-    /// Consistent and vivid, what measured best: eq. 6 is kept and gives back the variance that its sources have, and
-    /// logits have the length-corrected temperature.
+    /// Consistent and vivid, what measured best: eq. 6 is kept and gives back the variance that its sources have, logits
+    /// have the length-corrected temperature, and clean estimates agree along the surfaces.
     static render_settings vivid() {
         render_settings settings;
         settings.injection.length_correction = 1;
         settings.injection.variance.target = variance_target::sources;
-        // The consensus of clean estimates is switched on here.
+        settings.consensus.enabled = true;
         return settings;
     }
 
