@@ -17,7 +17,8 @@ TEST_SUITE("evaluation_program/caption") {
         for (auto const set : {scene_set::held_out, scene_set::development}) {
             for (auto const& caption : captions_of(set)) {
                 CHECK(miniature::is_held_out(static_cast<std::size_t>(caption.pattern), caption.first, caption.second));
-                auto const [low, high] = std::minmax(static_cast<int>(caption.first), static_cast<int>(caption.second));
+                auto const [low, high] =
+                    std::minmax({static_cast<int>(caption.first), static_cast<int>(caption.second)});
                 CHECK(paints.insert({static_cast<int>(caption.pattern), low, high}).second);
                 CHECK(caption.ground != caption.first);
                 CHECK(caption.ground != caption.second);
