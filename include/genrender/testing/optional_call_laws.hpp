@@ -83,7 +83,7 @@ void check_scaling_laws(law_report& report, denoiser_trials<Phi> const& trials,
     auto const scaled = [&](double scale, bool by_lists) {
         auto const attend = [&, scale, by_lists](auto& call) {
             using call_type = std::remove_cvref_t<decltype(call)>;
-            return attend_to(call, [&, scale, by_lists](features const& K, features const& V, std::size_t count) {
+            return attend_to(call, [&](features const& K, features const& V, std::size_t count) {
                 auto sources = extended_attention_sources(K, V, count);
                 if (by_lists) {
                     sources.begin(); // To be written: the pattern is forgotten.
