@@ -22,17 +22,17 @@ TEST_SUITE("attention/kept_variance") {
 
     /// The same call without the capability.
     struct call_without_variance : private keeping_call {
-        using keeping_call::keeping_call;
-        using typename keeping_call::features_type;
-        using typename keeping_call::real_type;
         using keeping_call::attend;
         using keeping_call::f;
         using keeping_call::frames;
+        using keeping_call::keeping_call;
         using keeping_call::key;
         using keeping_call::mix;
         using keeping_call::place;
         using keeping_call::query;
         using keeping_call::value;
+        using typename keeping_call::features_type;
+        using typename keeping_call::real_type;
     };
 
     } // namespace

@@ -47,7 +47,9 @@ TEST_SUITE("blending/mix_rows_keeping_variance") {
     /// Mean and variance of numbers with weights.
     struct weighted_numbers {
         std::vector<std::pair<double, double>> numbers; // value, weight
-        double mean() const { return moment([](double x) { return x; }); }
+        double mean() const {
+            return moment([](double x) { return x; });
+        }
         double variance() const {
             auto const m = mean();
             return moment([m](double x) { return (x - m) * (x - m); });
@@ -136,7 +138,8 @@ TEST_SUITE("blending/mix_rows_keeping_variance") {
             CHECK(F(2, 0) == 9);
         }
     }
-    TEST_CASE_TEMPLATE("it is the law of total variance, and the sources' variance, written plainly", Real, float, double) {
+    TEST_CASE_TEMPLATE("it is the law of total variance, and the sources' variance, written plainly", Real, float,
+                       double) {
         constexpr std::size_t keyframes = 3;
         for (std::size_t const channels : {1U, 7U, 16U, 33U}) {
             for (std::uint32_t const tokens : {4U, 5U, 300U, 700U}) {
@@ -173,7 +176,8 @@ TEST_SUITE("blending/mix_rows_keeping_variance") {
                   (sizeof(Real) == 4 ? 2e-4 : 1e-11));
         }
     }
-    TEST_CASE_TEMPLATE("a target of none, alpha 0 and rows without an entry give the bits of mix_rows", Real, float, double) {
+    TEST_CASE_TEMPLATE("a target of none, alpha 0 and rows without an entry give the bits of mix_rows", Real, float,
+                       double) {
         std::uint32_t const tokens = 40;
         auto const F_KF = testing::random_stack<Real, 3>({2, tokens, 9}, 3);
         auto const F_hat = testing::random_stack<Real, 2>({tokens, 9}, 4);
@@ -201,7 +205,8 @@ TEST_SUITE("blending/mix_rows_keeping_variance") {
         mix_rows_keeping_variance(F.view(), F_KF, rows.view(), Real(1), of_total);
         mix_rows(expected.view(), F_KF, rows.view(), Real(1));
         CHECK(greatest_difference(F, expected) < tolerance<Real>);
-        mix_rows_keeping_variance(F.view(), F_KF, rows.view(), Real(0.7), {variance_target::total, 1}); // no gain allowed
+        mix_rows_keeping_variance(F.view(), F_KF, rows.view(), Real(0.7),
+                                  {variance_target::total, 1}); // no gain allowed
         mix_rows(expected.view(), F_KF, rows.view(), Real(0.7));
         CHECK(greatest_difference(F, expected) < tolerance<Real>);
     }

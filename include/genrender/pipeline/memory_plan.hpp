@@ -206,8 +206,8 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
             making = std::max(making, matching.making);
         }
         auto const entries = by_texels ? detail::grown_capacity(grid.size() * m) : grid.size() * m + 1;
-        bytes.blend_plans +=
-            (at_once + of_keyframes) * ((grid.size() + 1) * sizeof(std::uint32_t) + entries * (sizeof(std::uint32_t) + sizeof(Real)));
+        bytes.blend_plans += (at_once + of_keyframes) * ((grid.size() + 1) * sizeof(std::uint32_t) +
+                                                         entries * (sizeof(std::uint32_t) + sizeof(Real)));
     }
     // Recorded features of the site that is running are counted in the bank. If they are copies of 16 bits, these are
     // made after attention, when a call holds less by about as much.
