@@ -14,10 +14,13 @@
 #include <genrender/core/error.hpp>
 #include <genrender/core/sparse_rows.hpp>
 
+#include <ATen/TensorOperators.h>
 #include <ATen/core/Tensor.h>
 #include <ATen/ops/cat.h>
 #include <ATen/ops/linear.h>
+#include <ATen/ops/ones_like.h>
 #include <ATen/ops/scaled_dot_product_attention.h>
+#include <ATen/ops/where.h>
 
 #include <algorithm>
 #include <array>
@@ -170,7 +173,7 @@ public:
         auto const own_share = plan.own.to(type);
         auto const blended = sum_of(X);
         auto const F = by_frames(at::addcmul(blended, own, own_share));
-        auto squares = sum_of(X * X);
+        auto const squares = sum_of(X * X);
         auto const covered = by_frames((plan.offsets.slice(0, 1) > plan.offsets.slice(0, 0, -1)).to(type).unsqueeze(1));
         auto const count = covered.sum(1, true);
         auto const mean_of = [&](at::Tensor const& x, double weight) {
@@ -185,8 +188,8 @@ public:
             to = mean_of(squares, double{alpha}) - mean_of(blended, double{alpha}).square();
         }
         auto const has_gain = (from > 0) & (to > 0) & (count > 1);
-        auto const gain = at::where(has_gain, (to / from).sqrt().clamp(1 / kept.most_gain, kept.most_gain),
-                                    at::ones({}, F.options()));
+        auto const gain =
+            at::where(has_gain, (to / from).sqrt().clamp(1 / kept.most_gain, kept.most_gain), at::ones_like(from));
         auto const kept_F = at::where(covered > 0, mean + gain * (F - mean), F) + shift;
         return at::where(covered > 0, kept_F.to(F_hat.scalar_type()), F_hat);
     }

@@ -76,9 +76,9 @@ void mix_stored_rows_keeping_variance(strided_view<Real, 2> F, strided_view<Stor
     auto const weight = is_total ? count : count * double{alpha};
     for (std::size_t c = 0; c < channels; ++c) {
         auto const mean = all[c] / count;
-        auto const mean_of_target = is_total ? mean : all[2 * channels + c] / weight;
+        auto const mean_of_target = is_total ? mean : all[3 * channels + c] / weight;
         auto const from = all[channels + c] / count - mean * mean;
-        auto const to = all[3 * channels + c] / weight - mean_of_target * mean_of_target;
+        auto const to = all[2 * channels + c] / weight - mean_of_target * mean_of_target;
         auto const g = count > 1 ? variance_gain(from, to, kept.most_gain) : 1.0;
         gain[c] = static_cast<Real>(g);
         offset[c] = static_cast<Real>((1 - g) * (double{shift[c]} + mean));

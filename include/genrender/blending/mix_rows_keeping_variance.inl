@@ -4,7 +4,11 @@
 namespace genrender::detail::GENRENDER_TARGET {
 
 /// Rows of moments, a number a channel each, of deviations from the shift.
-enum moment : std::size_t { sum_of_out, sum_of_squares_of_out, sum_of_target, sum_of_squares_of_target, moments };
+enum moment : std::size_t { sum_of_out, sum_of_squares_of_out, sum_of_squares_of_target, sum_of_target, moments };
+
+/// The moments that a target has: the mean of what is averaged is that of F_out.
+template <bool Total>
+inline constexpr std::size_t moments_of = Total ? sum_of_target : moments;
 
 /// The sources of one token that a pass takes, and what is left of the token's own feature.
 template <class Real, class Stored>
@@ -55,7 +59,7 @@ void mix_and_add_channels(Real* out, Real* sums, Real const* shift, token_source
     std::size_t c = 0;
     for (; c + width <= channels; c += width) {
         lanes<Real> add[moments];
-        for (std::size_t m = 0; m < moments; ++m) {
+        for (std::size_t m = 0; m < moments_of<Total>; ++m) {
             add[m] = load(sums + m * channels + c);
         }
         lanes<Real> former{};
@@ -65,7 +69,7 @@ void mix_and_add_channels(Real* out, Real* sums, Real const* shift, token_source
         store(out + c, mix_and_add<Total>(add, former, load(shift + c), pass,
                                           [&](std::size_t n)
                                               GENRENDER_ALWAYS_INLINE { return load_widened<Real>(pass.in[n] + c); }));
-        for (std::size_t m = 0; m < moments; ++m) {
+        for (std::size_t m = 0; m < moments_of<Total>; ++m) {
             store(sums + m * channels + c, add[m]);
         }
     }
