@@ -52,7 +52,7 @@ engine_case case_of_size(std::size_t size) {
     run.settings.sigma_max = static_cast<float>(pipeline.schedule().sigma_max());
     run.settings.keyframes.count = 3;
     run.settings.frames_per_call = 3;
-    run.settings.noise.seed = 5;
+    run.settings.noise.seed = run.settings.keyframes.seed = 5; // Python takes one for both
     return run;
 }
 
