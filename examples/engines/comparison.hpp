@@ -44,10 +44,6 @@ struct engine_case {
 /// folder's text encoder encodes them. Throws file_error where the folder is not as it should be.
 engine_case case_of_size(std::size_t size);
 
-/// The greatest difference of two stacks of latents, in parts of the range of the second. Throws shape_error if their
-/// shapes differ.
-double difference(latents<float> const& z, latents<float> const& reference);
-
 /// What an engine's run gave.
 struct engine_frames {
     latents<float> z;
@@ -60,9 +56,9 @@ struct engine_frames {
 ///
 ///     engine | way in | - | - | greatest difference | run s against the reference network | library outside the denoiser
 ///
-/// where `-` are lines and seconds of compiling, which table.cmake knows, and run s are of the processor's time. The difference is a share of the range of the
-/// reference's latents, the greatest of both sizes. Returns 0; 1 if it is above `bound`, if an engine without injection
-/// would pass too, or with a sentence if something throws.
+/// where `-` are lines and seconds of compiling, which table.cmake knows, and run s are of the processor's time. The
+/// difference is a share of the range of the reference's latents, the greatest of both sizes. Returns 0; 1 if it is above
+/// `bound`, if an engine without injection would pass too, or with a sentence if something throws.
 int compare_frames(std::string_view engine, std::string_view way_in, double bound,
                    std::function<engine_frames(engine_case const&)> const& run);
 

@@ -3,12 +3,13 @@
 #
 #   cmake -D BUILD=<folder> [-D ENGINES=<names>] [-D PYTHON=<path>] [-D COMPILER=<path>] [-D OPTIONS=<list>] -P table.cmake
 #
-# OPTIONS are further arguments for configuring. A client's project defines the target client_<folder>, which links engine_comparison and prints a row; -D
-# GENRENDER_ENGINE_PYTHON tells it the Python whose packages it may use: PYTHON, else the one that the environment variable
-# GENRENDER_PEER_PYTHON names, else python3. A project whose engine is not there fails with a sentence `skipped: ...`. A `-`
-# in a row is filled in here: lines of code without comments, of files `network.*` with what these include of another
-# folder's and of all others, and the seconds of the processor's time in which the client's own files were compiled and
-# linked, for Python genrender's module, small where they were before. Fails if a client does; engines that are skipped do not count.
+# OPTIONS are further arguments for configuring. A client's project defines the target client_<folder>, which links
+# engine_comparison and prints a row; -D GENRENDER_ENGINE_PYTHON tells it the Python whose packages it may use: PYTHON, else the
+# one that the environment variable GENRENDER_PEER_PYTHON names, else python3. A project whose engine is not there fails with a
+# sentence `skipped: ...`. A `-` in a row is filled in here: lines of code without comments, of files `network.*` and of all
+# others, each with what they include of another client's folder; and the seconds of the processor's time in which the client's
+# own files were compiled and linked, for Python genrender's module, small where they were before. Fails if a client does;
+# engines that are skipped do not count.
 cmake_minimum_required(VERSION 3.25)
 set(here ${CMAKE_CURRENT_LIST_DIR})
 
@@ -42,6 +43,18 @@ function(lines_of result)
         math(EXPR count "${count} + ${length}")
     endforeach()
     set(${result} ${count} PARENT_SCOPE)
+endfunction()
+
+# Appends to a list of files what these include of other clients' folders.
+function(add_shared_files list)
+    foreach(file IN LISTS ${list})
+        file(STRINGS ${file} includes REGEX "^#include \"[.][.]/[a-z_]+/[a-z_]+[.]hpp\"")
+        list(FILTER includes EXCLUDE REGEX "/comparison[.]hpp") # the library's side
+        list(TRANSFORM includes REPLACE "^#include \"[.][.]|\"$" "")
+        list(TRANSFORM includes PREPEND ${here})
+        list(APPEND ${list} ${includes})
+    endforeach()
+    set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
 
 set(rows "")
@@ -89,15 +102,10 @@ foreach(engine IN LISTS ENGINES)
 
     # Text is replaced by position: a row holds neither brackets nor semicolons.
     file(GLOB network ${here}/${engine}/network.*)
-    foreach(file IN LISTS network)
-        file(STRINGS ${file} includes REGEX "^#include \"[.][.]/[a-z_]+/network[.]hpp\"")
-        foreach(include IN LISTS includes) # what several engines have of their networks in common
-            string(REGEX REPLACE "^#include \"[.][.]|\"$" "" shared "${include}")
-            list(APPEND network ${here}${shared})
-        endforeach()
-    endforeach()
+    add_shared_files(network)
     file(GLOB glue ${here}/${engine}/*.[chp]pp ${here}/${engine}/*.py ${here}/${engine}/*.[ch])
     list(REMOVE_ITEM glue ${network})
+    add_shared_files(glue)
     lines_of(of_network ${network})
     lines_of(of_glue ${glue})
     string(REGEX MATCHALL "[^\n|]+ \\|[^\n]*" lines "${said}")

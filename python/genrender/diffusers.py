@@ -158,24 +158,25 @@ class Run:
 @torch.no_grad()
 def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, seed=0, keyframes=None, guidance_scale=7.5,
            conditioning_scale=1.0, clip_skip=None, sampler="euler", alpha=0.7, pre_attention=True, post_attention=True,
-    : average="quality", frames_per_call=1, hint=None, length_correction=0.0 noise="uv", normalization="mean",
-    observer=None observer=None,
+           normalization="mean", average="quality", noise="uv", frames_per_call=1, hint=None, observer=None,
+           length_correction=0.0):
     """Consistent clean latents of all frames [frames, channels, height / 8, width / 8], in float32 on the pipe's device.
 
-    `maps` are genrender.Maps with depth. `hint` is what the ControlNet sees of each frame [frames, channels, height, width], as
-    a tensor: the depth of the maps, repeated over three channels, where it is None. Of `keyframes` None is 4, or all frames if these are fewer; 0 renders every frame by
-    itself, as the pipeline does. `alpha` is a number or a function of step and name of the module;
-    `normalization` is mean, mean_and_supported_deviation, low_band, mean_and_deviation (the paper's) or None. `length_correction`
-    is the power of ln(keys) / ln(own keys) on the logits where frames attend to others: 1 is the length-corrected temperature.
+    `maps` are genrender.Maps, with depth where `hint` is None. `hint` is what the ControlNet sees of each frame [frames,
+    channels, height, width], as a tensor: the depth of the maps, repeated over three channels, where it is None. Of `keyframes`
+    None is 4, or all frames if these are fewer; 0 renders every frame by itself, as the pipeline does. `alpha` is a number or a
+    function of step and name of the module; `normalization` is mean, mean_and_supported_deviation, low_band,
+    mean_and_deviation (the paper's) or None. `length_correction` is the power of ln(keys) / ln(own keys) on the logits where
+    frames attend to others: 1 is the length-corrected temperature.
     Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
     for name, value, least in (("keyframes", keyframes, 0), ("frames_per_call", frames_per_call, 1)):
         if value < least:
             raise ValueError(f"render: {name} is {value}, expected at least {least}")
-    (math.isfinite(length_correction 0 : = >= Run(pipe, ValueError(f"render: a and clip_skip, expected finite height,
-    hint, if is keyframe_count=keyframes, length_correction maps, more" negative_prompt, not number, or prompt, raise
-    run seed=seed, width, {length_correction},
+    if not (math.isfinite(length_correction) and length_correction >= 0):
+        raise ValueError(f"render: length_correction is {length_correction}, expected a finite number, 0 or more")
+    run = Run(pipe, maps, prompt, negative_prompt, clip_skip, height, width, hint, keyframe_count=keyframes, seed=seed,
               guidance_scale=guidance_scale, conditioning_scale=conditioning_scale, alpha=alpha, average=average,
               pre_attention=pre_attention, post_attention=post_attention, normalization=normalization,
               frames_per_call=frames_per_call, length_correction=length_correction)

@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: MIT
-// A small network in ATen behind torch_denoiser: what it estimates by hand, the laws, and what is refused.
+// A small network in ATen behind torch_denoiser: what it estimates by hand, the laws, a run, and what is refused.
 #include <genrender/adapters/torch_denoiser.hpp>
+
+#include "../support/random_scene.hpp"
 
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/stack.hpp>
+#include <genrender/pipeline/render.hpp>
 #include <genrender/sampling/storing_denoiser.hpp>
 #include <genrender/testing/denoiser_laws.hpp>
+#include <genrender/testing/latent_lender_laws.hpp>
 
 #include <ATen/ATen.h>
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,11 +84,45 @@ TEST_SUITE("adapters/torch_denoiser") {
         return tensor_of(x0.view()).clone();
     }
 
+    /// Counts what goes to the device and what comes back, but for calls on views.
+    struct counting_denoiser : torch_denoiser {
+        using torch_denoiser::torch_denoiser;
+        mutable std::size_t uploads = 0;
+        mutable std::size_t downloads = 0;
+
+        at::Tensor upload(strided_view<float const, 4> z) const {
+            ++uploads;
+            return torch_denoiser::upload(z);
+        }
+        void download(strided_view<float, 4> to, at::Tensor const& z) const {
+            ++downloads;
+            torch_denoiser::download(to, z);
+        }
+    };
+
+    /// The same denoiser without lending anything: a run calls it with views.
+    struct viewing_denoiser {
+        using real_type = float;
+        using features_type = at::Tensor;
+        torch_denoiser phi = denoiser();
+
+        std::size_t latent_channels() const { return phi.latent_channels(); }
+        grid_extents latent_grid() const { return phi.latent_grid(); }
+        std::span<attention_site const> sites() const { return phi.sites(); }
+        std::size_t branches() const { return phi.branches(); }
+        template <class Processor>
+        void operator()(strided_view<float, 4> x0, strided_view<float const, 4> z, float sigma,
+                        std::span<frame_index const> frames, Processor& processor) const {
+            phi(x0, z, sigma, frames, processor);
+        }
+    };
+
     } // namespace
 
     TEST_CASE("a network tells its sites by running once") {
         static_assert(genrender::denoiser<torch_denoiser>);
         static_assert(call_naming_denoiser<torch_denoiser>);
+        static_assert(normalizing_lender<torch_denoiser> && !latent_lender<viewing_denoiser>);
         auto const network = [](at::Tensor const& z, double, at::Tensor const&, at::Tensor const&,
                                 torch_self_attention const& run) {
             auto const f = z.flatten(2).transpose(1, 2);
@@ -147,6 +188,28 @@ TEST_SUITE("adapters/torch_denoiser") {
     TEST_CASE("any network of LibTorch keeps the laws of a denoiser") {
         auto const report = testing::check_denoiser_laws(denoiser(), 1.5f);
         CHECK_MESSAGE(report.empty(), report.text());
+        CHECK(testing::check_latent_lender_laws(denoiser(), 1.5f, {.threads = 1}).text() == "");
+    }
+
+    TEST_CASE("a run uploads its latents once, downloads them once and gives the frames of calls on views") {
+        auto const maps = testing::random_scene(33, 5, {16, 32}, 3);
+        render_settings<float> settings;
+        settings.steps = 3;
+        settings.keyframes.count = 2;
+        settings.frames_per_call = 2;
+        counting_denoiser const phi(small_network, told(), channels, grid);
+        auto const lent = render(phi, to_uv_view(maps), {.settings = settings}).z;
+        auto const viewed = render(viewing_denoiser{}, to_uv_view(maps), {.settings = settings}).z;
+        REQUIRE(viewed.size() == 5 * 4 * 32);
+        float apart = 0;
+        float greatest = 0;
+        for (std::size_t e = 0; e < viewed.size(); ++e) {
+            apart = std::max(apart, std::abs(lent.data()[e] - viewed.data()[e]));
+            greatest = std::max(greatest, std::abs(viewed.data()[e]));
+        }
+        CHECK(apart <= 1e-5f * greatest);
+        CHECK(phi.uploads == 2); // the latents, and the background that normalisation asks for
+        CHECK(phi.downloads == 1);
     }
 
     TEST_CASE("what does not fit a network is refused with a sentence") {

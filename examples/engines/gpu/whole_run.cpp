@@ -3,6 +3,7 @@
 // GENRENDER_ENGINE_DEVICE names the device.
 #include "../libtorch/conditioning.hpp"
 #include "../libtorch/loading.hpp"
+#include "../measures.hpp"
 #include "plain_run.hpp"
 
 #include <genrender/pipeline/render.hpp>
@@ -19,7 +20,7 @@ using namespace genrender;
 using namespace genrender::examples;
 
 /// Wall-clock seconds of some work that ends with latents in host memory.
-static double seconds_of(auto const& work) {
+static double wall_seconds_of(auto const& work) {
     auto const start = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -46,8 +47,8 @@ static bool compare(std::size_t size, at::Device device) {
     // A device's first run compiles kernels and takes memory.
     ours();
     theirs();
-    auto const ours_seconds = seconds_of(ours);
-    auto const plain_seconds = seconds_of(theirs);
+    auto const ours_seconds = wall_seconds_of(ours);
+    auto const plain_seconds = wall_seconds_of(theirs);
     auto expected = latents<float>::from_shape(z.shape());
     tensor_of(to_view(expected)).copy_(plain);
     auto const apart = difference(z, expected);

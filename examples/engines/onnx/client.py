@@ -4,6 +4,7 @@
 import numpy
 import onnxruntime
 from case import Case
+from genrender import NoiseSchedule
 from genrender.graphs import render
 from network import Network
 
@@ -25,5 +26,5 @@ for name, frames in (("keyframe", m), ("injected", settings["frames_per_call"]),
     sessions[name, frames] = onnxruntime.InferenceSession(file, options, providers=["CPUExecutionProvider"])
 scale = settings["guidance_scale"]
 case.finish(lambda: render(
-    case.maps, case.timed(graph), branch_weights=(1 - scale, scale),
+    case.maps, case.timed(graph), branch_weights=(1 - scale, scale), schedule=NoiseSchedule.scaled_linear(*settings["betas"]),
     **{name: settings[name] for name in ("channels", "grid", "steps", "seed", "keyframes", "frames_per_call", "prediction")}))

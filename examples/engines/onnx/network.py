@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The reference denoiser's UNet and ControlNet as ONNX graphs of fixed shapes, by diffusers' classes."""
+"""A folder's UNet and ControlNet as ONNX graphs of fixed shapes, by diffusers' classes."""
 
 import pathlib
 import tempfile

@@ -3,30 +3,25 @@
 which client.cpp has written, and writes FOLDER/result.*, which it reads."""
 
 import json
-import math
 import pathlib
 import sys
 import time
 
 import genrender
-import numpy
 from safetensors.numpy import load_file, save_file
 
 
 class Case:
-    """`maps`, `hint` [frames, channels, height, width], `prompts` (the empty one, the prompt) [tokens, channels], `weights`, the
-    reference denoiser's folder, and `settings`: size, channels, grid, steps, keyframes, frames_per_call, seed, guidance_scale,
-    prediction."""
+    """`maps`, `hint` [frames, channels, height, width], `prompts` (the negative one, the prompt) [tokens, channels], `weights`,
+    the folder of the networks, and `settings`: height, width, channels, grid, steps, keyframes, frames_per_call, seed,
+    guidance_scale, prediction, betas (the first, the last, their number)."""
 
     def __init__(self):
         self.folder, self.weights = map(pathlib.Path, sys.argv[1:3])
         self.settings = json.loads((self.folder / "case.json").read_text())
         tensors = load_file(self.folder / "case.safetensors")
         self.maps = genrender.Maps(tensors["uv"], tensors["object"].astype("uint32"), tensors["coverage"].astype("uint8"))
-        self.hint, prompts = tensors["hint"], (tensors["empty_prompt"], tensors["prompt"])
-        # Attention to a prompt that stands there several times is attention to the prompt; so both are of one length.
-        tokens = math.lcm(*map(len, prompts))
-        self.prompts = tuple(numpy.tile(prompt, (tokens // len(prompt), 1)) for prompt in prompts)
+        self.hint, self.prompts = tensors["hint"], (tensors["empty_prompt"], tensors["prompt"])
         self.denoiser_seconds = 0
 
     def timed(self, call):

@@ -47,10 +47,10 @@ print(sys.executable if not lacks else '', ' '.join(lacks), '' if lacks else m.v
         COMMAND ${CMAKE_COMMAND} -E copy ${parts} ${site}/genrender)
 
     target_sources(engine_comparison PRIVATE ${genrender_python_client}/client.cpp)
-    target_compile_definitions(engine_comparison PRIVATE
-        GENRENDER_ENGINE="${client_TITLE} ${version}" GENRENDER_WAY_IN="${client_WAY_IN}" GENRENDER_PYTHON="${python}"
-        GENRENDER_PYTHON_SITE="${site}:${genrender_python_client}" GENRENDER_PYTHON_RUN="${CMAKE_CURRENT_BINARY_DIR}/run"
-        GENRENDER_CLIENT="${CMAKE_CURRENT_SOURCE_DIR}/client.py")
+    set_source_files_properties(${genrender_python_client}/client.cpp PROPERTIES COMPILE_DEFINITIONS
+        "GENRENDER_ENGINE=\"${client_TITLE} ${version}\";GENRENDER_WAY_IN=\"${client_WAY_IN}\";GENRENDER_PYTHON=\"${python}\";\
+GENRENDER_PYTHON_SITE=\"${site}:${genrender_python_client}\";GENRENDER_PYTHON_RUN=\"${CMAKE_CURRENT_BINARY_DIR}/run\";\
+GENRENDER_CLIENT=\"${CMAKE_CURRENT_SOURCE_DIR}/client.py\"")
     add_executable(client_${client_NAME} $<TARGET_OBJECTS:engine_comparison>)
     set_target_properties(client_${client_NAME} PROPERTIES LINKER_LANGUAGE CXX)
     target_link_libraries(client_${client_NAME} PRIVATE engine_comparison)

@@ -27,6 +27,21 @@ reference::safetensors_source source_of(stack<float, Rank> const& values) {
     return {{extents.begin(), extents.end()}, {values.data(), values.size()}};
 }
 
+/// The name that diffusers' schedulers and the Python module have for it.
+char const* name_of(prediction predicted) {
+    switch (predicted) {
+    case prediction::epsilon:
+        return "epsilon";
+    case prediction::velocity:
+        return "v_prediction";
+    case prediction::clean:
+        return "sample";
+    case prediction::flow:
+        break;
+    }
+    return "flow";
+}
+
 void write_case(std::filesystem::path const& folder, engine_case const& given) {
     auto const& told = given.conditioning;
     auto const& UV = given.UV;
@@ -43,19 +58,20 @@ void write_case(std::filesystem::path const& folder, engine_case const& given) {
                                   {"hint", source_of(told.hint)},
                                   {"prompt", source_of(told.prompt)},
                                   {"empty_prompt", source_of(told.empty_prompt)}});
+    auto const& config = given.config;
     auto const height = told.hint.extent(2);
     auto const width = told.hint.extent(3);
-    nlohmann::json const settings{{"size", 2 * height},
-                                  {"grid", {height, width}},
-                                  {"channels", given.config.in_channels},
+    nlohmann::json const settings{{"height", height},
+                                  {"width", width},
+                                  {"grid", {height / config.hint_scale(), width / config.hint_scale()}},
+                                  {"channels", config.in_channels},
                                   {"steps", given.settings.steps},
                                   {"keyframes", given.settings.keyframes.count},
                                   {"frames_per_call", given.settings.frames_per_call},
                                   {"seed", given.settings.noise.seed},
                                   {"guidance_scale", told.guidance_scale},
-                                  {"prediction", "v_prediction"}};
-    require_value(given.config.prediction_type == prediction::velocity, "write_case", "prediction", "another",
-                  "velocity");
+                                  {"prediction", name_of(config.prediction_type)},
+                                  {"betas", {config.beta_start, config.beta_end, config.num_train_timesteps}}};
     std::ofstream(folder / "case.json") << settings;
 }
 
@@ -64,7 +80,7 @@ engine_frames run_client(std::filesystem::path const& folder, engine_case const&
     write_case(folder, given);
     auto const command =
         std::string("PYTHONPATH='" GENRENDER_PYTHON_SITE "' '" GENRENDER_PYTHON "' -B '" GENRENDER_CLIENT "' '") +
-        folder.string() + "' '" GENRENDER_REFERENCE_DENOISER "/weights'";
+        folder.string() + "' '" + given.folder.string() + "'";
     if (std::system(command.c_str()) != 0) {
         throw file_error("the client in Python failed: " + command);
     }

@@ -1,20 +1,10 @@
 # SPDX-License-Identifier: MIT
-# What the project of an engine with static graphs includes: the library's side of the comparison, compiled once, and the
+# What the project of an engine with static graphs includes: the library's side of their comparison, compiled once, and the
 # client with the tests of its adapter.
-set(CMAKE_CXX_EXTENSIONS OFF)
-if(NOT CMAKE_BUILD_TYPE)
-    set(CMAKE_BUILD_TYPE Release)
-endif()
-set(GENRENDER_COMPONENTS scene CACHE STRING "")
+set(GENRENDER_COMPONENTS scene reference CACHE STRING "")
 add_subdirectory(${CMAKE_CURRENT_LIST_DIR}/../../.. genrender)
-
-add_library(engine_flags INTERFACE)
-target_compile_options(engine_flags INTERFACE
-    -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Werror
-    # Of optimised code of other projects' headers, as cmake/developer_flags.cmake says.
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-maybe-uninitialized>)
-add_library(engine_comparison OBJECT ${CMAKE_CURRENT_LIST_DIR}/comparison.cpp)
-target_link_libraries(engine_comparison PUBLIC genrender::genrender genrender::scene engine_flags)
+set(engine_comparison_source ${CMAKE_CURRENT_LIST_DIR}/comparison.cpp)
+include(${CMAKE_CURRENT_LIST_DIR}/../client.cmake)
 
 # The program client_<engine> of <engine>.cpp, which prints a row of the table, and its tests. The last two are the adapter
 # and the engine's own target.

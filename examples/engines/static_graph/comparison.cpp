@@ -4,6 +4,7 @@
 #include "network.hpp"
 
 #include "../../scenes/camera_rotation.hpp"
+#include "../measures.hpp"
 
 #include <genrender/injection/host_attention_call.hpp>
 #include <genrender/pipeline/render.hpp>
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <utility>
 
@@ -152,24 +152,6 @@ struct called_back {
         }
     }
 };
-
-double difference(latents<float> const& a, latents<float> const& b) {
-    require_extents("compare_graphs", "z", a.shape(), b.shape());
-    double greatest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        auto const apart = std::abs(static_cast<double>(a.data()[i]) - static_cast<double>(b.data()[i]));
-        greatest = apart <= greatest ? greatest : apart; // what is not a number stays
-    }
-    auto const [low, high] = std::minmax_element(b.begin(), b.end());
-    return greatest / (static_cast<double>(*high) - static_cast<double>(*low));
-}
-
-/// Seconds of the processor's time, which other programs of the machine do not lengthen.
-double seconds_of(std::function<void()> const& work) {
-    auto const start = std::clock();
-    work();
-    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 } // namespace
 

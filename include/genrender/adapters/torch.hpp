@@ -14,11 +14,11 @@
 #include <genrender/core/error.hpp>
 #include <genrender/core/sparse_rows.hpp>
 
-#include <ATen/TensorOperators.h>
 #include <ATen/core/Tensor.h>
+#include <ATen/ops/addcmul.h>
 #include <ATen/ops/cat.h>
+#include <ATen/ops/embedding_bag.h>
 #include <ATen/ops/linear.h>
-#include <ATen/ops/ones_like.h>
 #include <ATen/ops/scaled_dot_product_attention.h>
 #include <ATen/ops/where.h>
 
@@ -30,6 +30,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -162,8 +163,8 @@ public:
                         std::array{static_cast<std::size_t>(F_hat.size(0) * F_hat.size(1))});
         auto const all = F_KF.reshape({-1, F_KF.size(2)}).to(type);
         auto const shift = all.mean(0, true); // A mean far from 0 costs no digits.
-        auto const X = all - shift;
-        auto const own = F_hat.reshape({-1, F_hat.size(2)}).to(type) - shift;
+        auto const X = all.sub(shift);
+        auto const own = F_hat.reshape({-1, F_hat.size(2)}).to(type).sub(shift);
         auto const weights = plan.weights.to(type);
         auto const sum_of = [&](at::Tensor const& x) {
             constexpr std::int64_t sum = 0;
@@ -173,25 +174,27 @@ public:
         auto const own_share = plan.own.to(type);
         auto const blended = sum_of(X);
         auto const F = by_frames(at::addcmul(blended, own, own_share));
-        auto const squares = sum_of(X * X);
-        auto const covered = by_frames((plan.offsets.slice(0, 1) > plan.offsets.slice(0, 0, -1)).to(type).unsqueeze(1));
+        auto const squares = sum_of(X.square());
+        auto const ends = plan.offsets.slice(0, 1);
+        auto const is_covered = by_frames(ends.gt(plan.offsets.slice(0, 0, -1)).unsqueeze(1));
+        auto const covered = is_covered.to(type);
         auto const count = covered.sum(1, true);
         auto const mean_of = [&](at::Tensor const& x, double weight) {
-            return (by_frames(x) * covered).sum(1, true) / (count * weight).clamp_min(1e-30);
+            return by_frames(x).mul(covered).sum(1, true).div(count.mul(weight).clamp_min(1e-30));
         };
         auto const mean = mean_of(F, 1);
-        auto const from = mean_of((F - mean).square(), 1);
+        auto const from = mean_of(F.sub(mean).square(), 1);
         at::Tensor to;
         if (kept.target == variance_target::total) {
-            to = mean_of(at::addcmul(squares, own * own, own_share), 1) - mean.square();
+            to = mean_of(at::addcmul(squares, own.square(), own_share), 1).sub(mean.square());
         } else {
-            to = mean_of(squares, double{alpha}) - mean_of(blended, double{alpha}).square();
+            to = mean_of(squares, double{alpha}).sub(mean_of(blended, double{alpha}).square());
         }
-        auto const has_gain = (from > 0) & (to > 0) & (count > 1);
+        auto const has_gain = from.gt(0).logical_and(to.gt(0)).logical_and(count.gt(1));
         auto const gain =
-            at::where(has_gain, (to / from).sqrt().clamp(1 / kept.most_gain, kept.most_gain), at::ones_like(from));
-        auto const kept_F = at::where(covered > 0, mean + gain * (F - mean), F) + shift;
-        return at::where(covered > 0, kept_F.to(F_hat.scalar_type()), F_hat);
+            to.div(from).sqrt().clamp(1 / kept.most_gain, kept.most_gain).masked_fill(has_gain.logical_not(), 1);
+        auto const kept_F = mean.add(F.sub(mean).mul(gain)).add(shift);
+        return at::where(is_covered, kept_F.to(F_hat.scalar_type()), F_hat);
     }
 
     /// x kept in a format, as storing_attention_call has it.

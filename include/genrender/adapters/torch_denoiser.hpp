@@ -5,6 +5,7 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/adapters/torch.hpp>
+#include <genrender/adapters/torch_latents.hpp>
 #include <genrender/adapters/torch_plans.hpp>
 #include <genrender/attention/attention_site.hpp>
 #include <genrender/core/error.hpp>
@@ -50,10 +51,10 @@ struct torch_conditioning {
     discrete_noise_schedule schedule{};         ///< the times of its training
 };
 
-/// A model of denoiser of any torch_network. Latents go to the device and come back, once a call; features stay there. Its
-/// sites are the modules at which the network calls back, named as diffusers names them: those that begin with `up_blocks.`
-/// are the decoder's, with `down_blocks.` the encoder's, all others in the middle.
-class torch_denoiser {
+/// A model of denoiser of any torch_network. Its latents stay on the device of the hints for a whole run (latent_lender), as
+/// its features do. Its sites are the modules at which the network calls back, named as diffusers names them: those that begin
+/// with `up_blocks.` are the decoder's, with `down_blocks.` the encoder's, all others in the middle.
+class torch_denoiser : public torch_latents {
 public:
     using real_type = float;                ///< scalar of the latents
     using features_type = at::Tensor;       ///< features on their device
@@ -63,7 +64,8 @@ public:
     /// value_error for a number of prompts that is neither 1 nor 2, for no hints, if the tokens of a module are not those
     /// of the latents' grid, halved a number of times, or if two modules have one name.
     torch_denoiser(torch_network network, torch_conditioning told, std::size_t channels, grid_extents grid)
-        : network_(std::move(network)), told_(std::move(told)), channels_(channels), grid_(grid) {
+        : torch_latents(told.hints.defined() ? told.hints.device() : at::Device(at::kCPU)),
+          network_(std::move(network)), told_(std::move(told)), channels_(channels), grid_(grid) {
         constexpr auto here = "torch_denoiser";
         require_value(told_.prompts.size() == 1 || told_.prompts.size() == 2, here, "prompts", told_.prompts.size(),
                       "1, or 2 with classifier-free guidance");
@@ -90,16 +92,16 @@ public:
     /// One a prompt.
     std::size_t branches() const { return told_.prompts.size(); }
 
-    /// Writes D(z, sigma) into x0, both [frames, channels, height, width]. Throws value_error for a frame without a hint or
-    /// a module that was not there when sites were found, shape_error if the network's output has other extents than z.
+    /// D(z, sigma) of latents on the device, of z's extents [frames, channels, height, width]. Throws value_error for a frame
+    /// without a hint or a module that was not there when sites were found, shape_error if the network's output has other
+    /// extents than z.
     template <attention_processor<torch_attention_call> Processor>
-    void operator()(strided_view<float, 4> x0, strided_view<float const, 4> z, float sigma,
-                    std::span<frame_index const> frames, Processor& processor) const {
+    at::Tensor operator()(at::Tensor const& z, float sigma, std::span<frame_index const> frames,
+                          Processor& processor) const {
         c10::InferenceMode const no_gradients;
         auto const [c_skip, c_out, c_in] = scalings_of(told_.predicted, sigma);
         auto const t = told_.predicted == prediction::flow ? 1000.0 * static_cast<double>(flow_time_of(sigma))
                                                            : told_.schedule.t_of(static_cast<double>(sigma));
-        auto const noisy = tensor_of(z).to(told_.hints.device());
         auto const hints = hints_of(frames);
         at::Tensor F;
         for (std::uint32_t branch = 0; branch < branches(); ++branch) {
@@ -110,11 +112,18 @@ public:
                 torch_attention_call call({found->second.first, branch}, frames, f, found->second.second, plans_);
                 return at::Tensor(processor(call));
             };
-            auto const output = network_(noisy.mul(c_in), t, told_.prompts[branch], hints, run).to(at::kFloat);
-            require_extents("torch_denoiser", "output of the network", extents_of(output), z.extents());
+            auto const output = network_(z.mul(c_in), t, told_.prompts[branch], hints, run).to(at::kFloat);
+            require_extents("torch_denoiser", "output of the network", extents_of(output), extents_of(z));
             F = branch == 0 ? output : F.add(output.sub(F), told_.guidance_scale);
         }
-        tensor_of(x0).copy_(noisy.mul(c_skip).add(F, c_out));
+        return z.mul(c_skip).add(F, c_out);
+    }
+
+    /// The same of views in host memory, both [frames, channels, height, width]: uploaded, estimated, and written into x0.
+    template <attention_processor<torch_attention_call> Processor>
+    void operator()(strided_view<float, 4> x0, strided_view<float const, 4> z, float sigma,
+                    std::span<frame_index const> frames, Processor& processor) const {
+        download(x0, (*this)(upload(z), sigma, frames, processor));
     }
 
 private:
