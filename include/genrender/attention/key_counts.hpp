@@ -29,13 +29,14 @@ count_keys(attention_sources<Features>& sources, site_index site, std::span<fram
            key_count_function const& counts_of, std::span<std::optional<std::size_t> const> left_out = {}) {
     std::vector<std::vector<float>> all;
     for (std::size_t i = 0; counts_of && i < frames.size(); ++i) {
-        auto const dropped = left_out.empty() ? std::nullopt : left_out[i];
         auto const blocks = std::as_const(sources)[i].size();
+        auto const drops = !left_out.empty() && left_out[i].has_value();
+        auto const dropped = drops ? *left_out[i] : blocks; // behind the last block where none is
         auto const& counts = all.emplace_back(counts_of(site, frames[i]));
-        auto const tokens = counts.size() / (blocks + (dropped ? 1 : 0));
-        assert(tokens * (blocks + (dropped ? 1 : 0)) == counts.size() && "count_keys: a number is given for every key");
+        auto const tokens = counts.size() / (blocks + (drops ? 1 : 0));
+        assert(tokens * (blocks + (drops ? 1 : 0)) == counts.size() && "count_keys: a number is given for every key");
         for (std::size_t b = 0; b < blocks; ++b) {
-            auto const place = dropped && b > *dropped ? b + 1 : b;
+            auto const place = b > dropped ? b + 1 : b;
             sources.set_counts(i, b, counts.data() + place * tokens);
         }
     }
