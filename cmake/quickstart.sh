@@ -172,7 +172,7 @@ slow_checks() {
     say "clang-tidy"
     # shellcheck disable=SC2086 # a list of words
     printf '%s\n' $tidy_units | xargs -P 2 -n 1 clang-tidy --quiet --warnings-as-errors='*' -p build/test \
-        --extra-arg=-Wno-unknown-warning-option
+        --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-unused-command-line-argument
     say "Passed"
     printf '%s' "$counts"
 }
