@@ -64,8 +64,8 @@ struct injection_options {
                 ->type_name("KIND");
         };
         add("--preset", preset, preset_names,
-            "paper (to the letter: texels, plain averages, means and deviations) or vivid (temperature and\n"
-            "variance kept); what else is told goes before it");
+            "paper (to the letter: texels, plain averages, means and deviations) or vivid (temperature, variance\n"
+            "kept and the consensus of clean estimates); what else is told goes before it");
         add("--variance", variance, variance_names,
             "that eq. 6 keeps: none (the paper's), total (of all that is averaged) or sources (of keyframes)");
         ours.add_flag(

@@ -193,7 +193,8 @@ render_result<typename detail::real_type_of<Phi>::type>
 render(Phi const& phi, Maps const& UV,
        render_arguments<typename detail::real_type_of<Phi>::type, Method,
                         detail::map_or_chosen<Map, detail::dimensions_of<Maps>>> const& arguments) {
-    // As require_denoiser, require_latent_lender and require_canonical_maps, and here so that a compiler comes to the sentence at once.
+    // As require_denoiser, require_latent_lender and require_canonical_maps, and here so that a compiler comes to the
+    // sentence at once.
     static_assert(detail::denoiser_names_types<Phi>, GENRENDER_DENOISER_TYPES);
     static_assert(detail::denoiser_tells_latents<Phi>, GENRENDER_DENOISER_LATENTS);
     static_assert(detail::denoiser_tells_sites<Phi>, GENRENDER_DENOISER_SITES);

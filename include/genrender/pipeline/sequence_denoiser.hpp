@@ -34,8 +34,8 @@ std::size_t step_at(std::span<Real const> sigmas, std::type_identity_t<Real> sig
 }
 
 /// D(z, sigma) of a whole animation: a method's estimates of all frames, in consensus and normalised where settings say
-/// so. Any sampler drives it; it keeps
-/// nothing from one evaluation to the next, and what it draws depends on the seed and the noise level alone.
+/// so. Any sampler drives it; it keeps nothing from one evaluation to the next, and what it draws depends on the seed and
+/// the noise level alone.
 template <denoiser Phi, correspondence_map Map,
           sequence_method<sequence_passes<Phi, Map>> Method = generative_rendering>
 class sequence_denoiser {
