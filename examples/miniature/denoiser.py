@@ -18,6 +18,9 @@ from pictures import contact_sheet
 from training_run import TrainingRun
 
 TEXT_CHANNELS = 64
+# How often scenes of each pattern are drawn: what is hard to draw oftener than the rest.
+PATTERN_SHARES = dict(plain=0.08, stripes=0.10, bricks=0.15, checker=0.20, dots=0.23, waves=0.24)
+SUBJECT_WEIGHT = 3  # of the loss where a subject fills all pixels of a latent's place, against 1 where none does
 SHAPE = dict(
     in_channels=LATENT_CHANNELS, block_out_channels=(48, 96, 96), layers_per_block=1, attention_head_dim=(1, 3, 3),
     cross_attention_dim=TEXT_CHANNELS, norm_num_groups=8,
@@ -116,6 +119,14 @@ def cached_latents(pictures, autoencoder, path):
     return numpy.memmap(path, numpy.float16, "r", shape=shape)
 
 
+def pattern_probabilities(pictures):
+    """How likely each picture is to be drawn [pictures]: PATTERN_SHARES, alike within a pattern."""
+    patterns = pictures.labels["pattern"]
+    shares = numpy.array([PATTERN_SHARES[name] for name in pictures.patterns])
+    each = (shares / numpy.maximum(1, numpy.bincount(patterns, minlength=len(shares))))[patterns]
+    return each / each.sum()
+
+
 def draw_noise_levels(batch, random):
     """ln sigma ~ N(0, 1.5), stratified over the batch."""
     place = torch.from_numpy((numpy.arange(batch) + random.random(batch)) / batch)
@@ -175,15 +186,18 @@ def train_denoiser(pictures, held_out, out, steps, seed, precision, compiled, ba
     run = TrainingRun("denoiser", model, out / "denoiser_checkpoint.pt", steps, rate, seed, precision)
     predict = torch.compile(model, dynamic=False) if compiled else model
     nothing = tokens_of(tokenizer, [""])
+    probabilities = pattern_probabilities(pictures)
 
     def loss_of(random, generator):
-        numbers = numpy.sort(random.choice(len(pictures), batch, replace=False))
+        numbers = numpy.sort(random.choice(len(pictures), batch, replace=False, p=probabilities))
         side = random.integers(0, 2, batch)
         x0 = torch.from_numpy(latents[numbers, side].astype(numpy.float32))
         # An animation's nearest point is seldom in this frame.
         depth = pictures.depth_of(numbers) * torch.from_numpy(random.uniform(0.7, 1, (batch, 1, 1)).astype("float32"))
         mirrored = torch.from_numpy(side == 1)
-        depth[mirrored] = depth[mirrored].flip(-1)
+        subjects = torch.from_numpy((pictures.subjects[numbers] == 255).astype("float32"))
+        depth[mirrored], subjects[mirrored] = depth[mirrored].flip(-1), subjects[mirrored].flip(-1)
+        weights = 1 + (SUBJECT_WEIGHT - 1) * torch.nn.functional.avg_pool2d(subjects[:, None], 4)
         tokens = tokens_of(tokenizer, [disturbed(pictures.captions[n], random) for n in numbers])
         sigma = draw_noise_levels(batch, random)
         noise = torch.randn(x0.shape, generator=generator)
@@ -191,7 +205,7 @@ def train_denoiser(pictures, held_out, out, steps, seed, precision, compiled, ba
         scale = (1 + s**2).sqrt()
         z = ((x0 + s * noise) / scale).to(precision).contiguous(memory_format=torch.channels_last)
         v = predict(z, SCHEDULE.time_of(sigma), depth[:, None].to(precision), tokens)
-        return ((v.float() - (noise - s * x0) / scale) ** 2).mean()
+        return (weights * (v.float() - (noise - s * x0) / scale) ** 2).mean() / weights.mean()
 
     shown = numpy.arange(min(24, len(held_out)))
     shown_depth = held_out.depth_of(shown)[:, None]

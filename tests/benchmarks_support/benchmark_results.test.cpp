@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "examples_support/scratch_folder.hpp"
+#include "support/scratch_folder.hpp"
 
 #include <string>
 

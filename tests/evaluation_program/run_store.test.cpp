@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "../examples_support/scratch_folder.hpp"
+#include "../support/scratch_folder.hpp"
 
 #include <filesystem>
 #include <fstream>

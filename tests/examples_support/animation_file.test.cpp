@@ -2,7 +2,7 @@
 // Animated WebP files, read back by the format's own decoder.
 #include <examples/support/animation_file.hpp>
 
-#include "scratch_folder.hpp"
+#include "../support/scratch_folder.hpp"
 
 #include <doctest/doctest.h>
 #include <webp/demux.h>

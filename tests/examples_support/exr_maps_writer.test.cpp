@@ -3,7 +3,7 @@
 #include <examples/support/exr_maps_writer.hpp>
 
 #include "exr_worlds.hpp"
-#include "scratch_folder.hpp"
+#include "../support/scratch_folder.hpp"
 
 #include <doctest/doctest.h>
 

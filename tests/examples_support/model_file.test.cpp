@@ -3,7 +3,7 @@
 #include <examples/support/model_file.hpp>
 
 #include "gltf_file.hpp"
-#include "scratch_folder.hpp"
+#include "../support/scratch_folder.hpp"
 
 #include <doctest/doctest.h>
 

@@ -2,6 +2,8 @@
 // Latents as a file that NumPy reads.
 #include "examples/support/npy_file.hpp"
 
+#include "../support/scratch_folder.hpp"
+
 #include <doctest/doctest.h>
 
 #include <bit>
@@ -17,7 +19,8 @@ using namespace genrender;
 
 TEST_SUITE("examples_support/npy_file") {
     TEST_CASE("the file is a header of a whole number of 64 bytes and then the elements, the last axis fastest") {
-        auto const path = std::filesystem::temp_directory_path() / "genrender_npy_file_test" / "z.npy";
+        tests::scratch_folder const folder;
+        auto const path = folder / "deeper" / "z.npy";
         std::vector<float> values(2 * 3 * 1 * 2);
         for (std::size_t i = 0; i < values.size(); ++i) {
             values[i] = 0.5F * static_cast<float>(i) - 1;
@@ -41,11 +44,10 @@ TEST_SUITE("examples_support/npy_file") {
             auto const bits = byte(at) | byte(at + 1) << 8U | byte(at + 2) << 16U | byte(at + 3) << 24U;
             CHECK(std::bit_cast<float>(bits) == values[i]);
         }
-        std::filesystem::remove_all(path.parent_path());
     }
 
     TEST_CASE("elements of a view that skips memory are written in the view's order") {
-        auto const folder = std::filesystem::temp_directory_path() / "genrender_npy_file_test";
+        tests::scratch_folder const folder;
         std::vector<float> const every_second{1, -1, 2, -1, 3, -1};
         std::vector<float> const dense{1, 2, 3};
         examples::write_npy(folder / "a.npy",
@@ -56,6 +58,5 @@ TEST_SUITE("examples_support/npy_file") {
             return std::string{std::istreambuf_iterator<char>(file), {}};
         };
         CHECK(read(folder / "a.npy") == read(folder / "b.npy"));
-        std::filesystem::remove_all(folder);
     }
 }

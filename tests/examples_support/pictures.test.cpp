@@ -2,7 +2,7 @@
 // Pictures and PNG files, read back.
 #include <examples/support/pictures.hpp>
 
-#include "scratch_folder.hpp"
+#include "../support/scratch_folder.hpp"
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 // The three files hold what the report holds, and the picture shows each defect in its colour where it is.
 #include <examples/support/preflight_output.hpp>
 
-#include "scratch_folder.hpp"
+#include "../support/scratch_folder.hpp"
 
 #include <genrender/maps/uv_maps.hpp>
 #include <support/slanted_maps.hpp>

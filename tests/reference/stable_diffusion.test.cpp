@@ -3,6 +3,7 @@
 #include <genrender/reference/stable_diffusion.hpp>
 
 #include "../support/golden_file.hpp"
+#include "../support/scratch_folder.hpp"
 
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/core/tensor.hpp>
@@ -120,7 +121,8 @@ TEST_SUITE("reference/stable_diffusion") {
     }
 
     TEST_CASE("parts that are missing or do not fit are told before anything large is read") {
-        auto const folder = std::filesystem::temp_directory_path() / "genrender_stable_diffusion_test";
+        tests::scratch_folder const scratch;
+        auto const folder = scratch / "pipeline";
         auto const fresh = [&] {
             std::filesystem::remove_all(folder);
             std::filesystem::copy(tiny_pipeline, folder, std::filesystem::copy_options::recursive);
@@ -155,6 +157,5 @@ TEST_SUITE("reference/stable_diffusion") {
         change("unet/config.json", "layers_per_block", 2);
         change("controlnet/config.json", "layers_per_block", 2);
         CHECK(refusal().find("unet") != std::string::npos);
-        std::filesystem::remove_all(folder);
     }
 }
