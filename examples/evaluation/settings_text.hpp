@@ -66,8 +66,9 @@ inline std::string settings_text(row_settings const& settings, std::vector<atten
                                  std::uint32_t branches) {
     detail::settings_writer write;
     auto const& [steps, sigma_min, sigma_max, rho, sampler, noise, keyframes, correspondence, consensus, normalization,
-                 layers, alpha, injection, first_fill_share, average, quality, window_begin, window_end,
-                 keyframe_storage, reuses_keyframes, frames_per_call, fills_last_call, calls_at_once] = settings;
+                 layers, alpha, latents_grid_alpha, injection, first_fill_share, average, quality, window_begin,
+                 window_end, keyframe_storage, reuses_keyframes, frames_per_call, fills_last_call, calls_at_once] =
+        settings;
     static_cast<void>(reuses_keyframes); // frames are the same to the bit
     static_cast<void>(frames_per_call);
     static_cast<void>(fills_last_call);
@@ -79,6 +80,7 @@ inline std::string settings_text(row_settings const& settings, std::vector<atten
     write("sampler", sampler);
     write("first_fill_share", first_fill_share);
     write("average", average);
+    write("latents_grid_alpha", latents_grid_alpha);
     write("window_begin", window_begin);
     write("window_end", window_end);
     write("keyframe_storage", keyframe_storage);
@@ -111,7 +113,8 @@ inline std::string settings_text(row_settings const& settings, std::vector<atten
         write("correspondence.texels.dilation", dilation);
     }
     {
-        auto const& [enabled, begin, end, strength, sources, first_fill, sources_average, most_gain, fades] = consensus;
+        auto const& [enabled, begin, end, strength, sources, first_fill, sources_average, sources_quality, most_gain,
+                     fades, on_background, distance] = consensus;
         auto const& [count, drawing, frames, seed] = sources;
         write("consensus.enabled", enabled);
         write("consensus.window_begin", begin);
@@ -129,6 +132,11 @@ inline std::string settings_text(row_settings const& settings, std::vector<atten
         write("consensus.average", sources_average);
         write("consensus.most_gain", most_gain);
         write("consensus.fades_at_silhouettes", fades);
+        write("consensus.agrees_on_background", on_background);
+        write("consensus.background_distance", distance);
+        write("consensus.quality.exponent_begin", sources_quality.exponent_begin);
+        write("consensus.quality.exponent_end", sources_quality.exponent_end);
+        write("consensus.quality.threshold", sources_quality.threshold);
     }
     {
         auto const& [exponent_begin, exponent_end, threshold] = quality;

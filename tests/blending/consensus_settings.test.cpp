@@ -56,5 +56,7 @@ TEST_SUITE("blending/consensus_settings") {
               "render: settings.consensus.most_gain is 0.500000, expected a factor of at least 1");
         CHECK(refusal_of([](auto& s) { s.sources.count = 0; }) ==
               "render: settings.consensus.sources.count is 0, expected at least one frame");
+        CHECK(refusal_of([](auto& s) { s.quality.exponent_end = -2; }) ==
+              "render: settings.consensus.quality.exponent_end is -2.000000, expected a finite number, 0 or more");
     }
 }

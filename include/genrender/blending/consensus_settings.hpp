@@ -4,7 +4,7 @@
 
 #include <genrender/core/begin_header.inl>
 
-#include <genrender/blending/blend_plan.hpp>
+#include <genrender/blending/quality_weights.hpp>
 #include <genrender/core/error.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 
@@ -29,10 +29,17 @@ struct consensus_settings {
     keyframe_settings sources{.count = 16, .drawing = keyframe_drawing::stratified, .frames = {}, .seed = 0};
     Real first_fill_share = 0; ///< of the first source that sees a point; the rest is the average of all that do
     texel_average average = texel_average::by_quality; ///< how the average weighs the sources
+    quality_settings quality;                          ///< what qualities do besides, over the steps of the run
     /// The most that a channel's deviation is multiplied by to give back what averaging took; 1 gives nothing back.
     Real most_gain = 2;
     /// Whether a cell that shows its object partly moves by that share alone; else every covered cell moves alike.
     bool fades_at_silhouettes = true;
+    /// Whether cells without any object agree too, in every step and each at its place on the screen, where nothing is
+    /// resampled: all sources that show background there alike. Of no effect unless their noise stands still
+    /// (background_noise::fixed): another sky turns with the camera.
+    bool agrees_on_background = true;
+    /// Cells around an object, in each direction, that do not agree on the background: a decoder mixes what is that near.
+    std::size_t background_distance = 2;
 };
 
 /// Throws value_error for settings that no run of `steps` steps could honour, in the name of `function`.
@@ -53,6 +60,7 @@ void require_consensus_settings(char const* function, consensus_settings<Real> c
     require(settings.most_gain >= 1, "settings.consensus.most_gain", settings.most_gain, "a factor of at least 1");
     require(settings.sources.count >= 1, "settings.consensus.sources.count", settings.sources.count,
             "at least one frame");
+    require_quality_settings(function, settings.quality, "settings.consensus.");
 }
 
 } // namespace genrender

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace genrender {
 
@@ -50,10 +51,13 @@ struct quality_settings {
     }
 };
 
-/// Throws value_error, in the name of `function`, for exponents or a threshold that are negative or not finite.
-inline void require_quality_settings(char const* function, quality_settings const& settings) {
-    auto const require = [function](char const* argument, double value) {
-        require_value(is_finite(value) && value >= 0, function, argument, value, "a finite number, 0 or more");
+/// Throws value_error, in the name of `function`, for exponents or a threshold that are negative or not finite; `owner` is
+/// what has them, with a dot.
+inline void require_quality_settings(char const* function, quality_settings const& settings,
+                                     std::string const& owner = "") {
+    auto const require = [&](char const* argument, double value) {
+        require_value(is_finite(value) && value >= 0, function, (owner + argument).c_str(), value,
+                      "a finite number, 0 or more");
     };
     require("quality.exponent_begin", settings.exponent_begin);
     require("quality.exponent_end", settings.exponent_end);

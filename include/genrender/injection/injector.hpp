@@ -68,11 +68,12 @@ public:
         }
         scale_by_length(sources, call.place().site, scale_of_);
         Features F_hat = attend_scaled(call, own.Q, sources);
-        if (kept == nullptr || !settings_.post_attention) {
+        auto const alpha = kept != nullptr && settings_.post_attention ? alpha_(call.place().site) : Real(0);
+        if (alpha == 0) {
             return F_hat;
         }
         auto const rows = plans_.rows(call.place().site, frames);
-        return mixed_features<Call>(call, F_hat, *kept->F_KF, rows, alpha_(call.place().site), settings_.variance);
+        return mixed_features<Call>(call, F_hat, *kept->F_KF, rows, alpha, settings_.variance);
     }
 
     /// Says what a call lacks that is none.

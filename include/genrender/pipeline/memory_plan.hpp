@@ -133,7 +133,8 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     std::size_t m = 0;
     std::set<frame_index> ever_keyframes;
     std::size_t consensus_evaluations = 0;
-    std::size_t K = 0; // source frames of a consensus
+    std::size_t surface_evaluations = 0; // of these, with a consensus along the surfaces
+    std::size_t K = 0;                   // source frames of a consensus
     std::set<frame_index> ever_sources;
     for (std::size_t step = 0; step < settings.steps; ++step) {
         auto const of_step = evaluations_at(settings.sampler, step);
@@ -144,6 +145,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
         ever_keyframes.insert(drawn.begin(), drawn.end());
         auto const sources = consensus_sources(settings, run.frames, step);
         consensus_evaluations += sources.empty() ? 0 : of_step;
+        surface_evaluations += has_surface_consensus(settings, step) ? of_step : 0;
         K = std::max(K, sources.size());
         ever_sources.insert(sources.begin(), sources.end());
     }
@@ -182,7 +184,8 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
             }
             if (settings.injection.post_attention) {
                 work.mixed_bytes +=
-                    injected_evaluations * frames * N * C *
+                    (site.grid == run.latent_grid && settings.latents_grid_alpha == 0 ? 0 : 1) * injected_evaluations *
+                    frames * N * C *
                     static_cast<double>(2 * sizeof(Real) + m * feature_bytes<Real>(settings.keyframe_storage));
             }
         }
@@ -192,11 +195,11 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     auto const latent_bytes = run.latent_channels * run.latent_grid.size() * sizeof(Real);
     bytes.latents = detail::latent_stacks(settings.sampler) * run.frames * latent_bytes;
     bytes.maps = run.frames * run.map_grid.size() * (run.map_dimensions * sizeof(float) + 5);
-    auto const has_shares = K > 0 && settings.consensus.fades_at_silhouettes;
+    auto const has_shares = surface_evaluations > 0 && settings.consensus.fades_at_silhouettes;
     bytes.background = (has_shares ? 2 : 1) * run.frames * run.latent_grid.size();
     auto const by_texels = settings.correspondence.kind == correspondence_kind::texel_grid;
     auto all_grids = grids;
-    if (K > 0) {
+    if (surface_evaluations > 0) {
         all_grids.insert(run.latent_grid);
     }
     for (auto const& grid : all_grids) {
@@ -221,7 +224,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     };
     for (auto const& grid : all_grids) {
         auto const has_plans = grids.contains(grid);
-        auto const has_sources = K > 0 && grid == run.latent_grid;
+        auto const has_sources = surface_evaluations > 0 && grid == run.latent_grid;
         if (!by_texels) { // One map, for both if both have the grid.
             auto ever = has_plans ? ever_keyframes : std::set<frame_index>{};
             ever.insert(ever_sources.begin(), has_sources ? ever_sources.end() : ever_sources.begin());
@@ -239,8 +242,9 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
         auto const matches = K * token_matches::bytes_of(cells); // which a full cache does not keep
         auto const is_kept = run.frames * ever_sources.size() * token_matches::bytes_of(cells) <=
                              settings.correspondence.footprint.match_cache_bytes;
-        bytes.consensus = K * latent_bytes + lanes * (plan_bytes(run.latent_grid, K) + latent_bytes +
-                                                      (by_texels || is_kept ? 0 : matches) + making);
+        bytes.consensus =
+            K * latent_bytes + lanes * (plan_bytes(run.latent_grid, K) + latent_bytes +
+                                        (by_texels || is_kept || surface_evaluations == 0 ? 0 : matches) + making);
     }
     // Recorded features of the site that is running are counted in the bank. If they are copies of 16 bits, these are
     // made after attention, when a call holds less by about as much.
@@ -258,7 +262,7 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     // Sources are copied; a frame's averages read them and are written and read twice, for statistics and to move x0.
     work.consensus_bytes = static_cast<double>(consensus_evaluations) * static_cast<double>(latent_bytes) *
                            (2 * static_cast<double>(K) + frames * (2 * static_cast<double>(K) + 5));
-    work.consensus_matches = static_cast<double>(consensus_evaluations) * frames * static_cast<double>(K) *
+    work.consensus_matches = static_cast<double>(surface_evaluations) * frames * static_cast<double>(K) *
                              static_cast<double>(run.latent_grid.size());
     if (settings.normalization.enabled) { // statistics read, values read and written
         work.normalized_bytes = plain_evaluations * 3 * frames * static_cast<double>(latent_bytes);

@@ -60,6 +60,8 @@ void require_render_settings(render_settings<Real> const& settings, std::size_t 
                   "render", "settings.injection.length_correction", settings.injection.length_correction,
                   "a finite number, 0 or more");
     require_kept_variance("render", settings.injection.variance);
+    require_value(settings.latents_grid_alpha >= 0 && settings.latents_grid_alpha <= 1, "render",
+                  "settings.latents_grid_alpha", settings.latents_grid_alpha, "a share in [0, 1]");
     require_quality_settings("render", settings.quality);
     require_consensus_settings("render", settings.consensus, settings.steps);
     require_adain_settings("render", settings.normalization);

@@ -8,6 +8,7 @@
 #include <genrender/attention/feature_storage.hpp>
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/blending/consensus_settings.hpp>
+#include <genrender/core/index.hpp>
 #include <genrender/correspondence/chosen_correspondence.hpp>
 #include <genrender/injection/alpha_schedule.hpp>
 #include <genrender/injection/injection_settings.hpp>
@@ -49,6 +50,9 @@ struct render_settings {
     std::function<bool(attention_site const&, std::uint32_t branch)> layers = is_in_decoder;
     /// alpha of eq. 6, by step and site.
     alpha_schedule<Real> alpha = constant_alpha(Real(paper_alpha));
+    /// What alpha is multiplied by at sites of the latents' own grid, in [0, 1]: 0 where a consensus makes that grid agree
+    /// and eq. 6 only makes it paler.
+    Real latents_grid_alpha = 1;
     injection_settings injection;      ///< eq. 3, 5 and 6
     Real first_fill_share = Real(0.5); ///< of the inpainted texture in the unified one
     /// How the average texture weighs keyframes; plain is the paper's.
@@ -101,6 +105,14 @@ struct render_settings {
         requires(!std::is_same_v<Other, Real>)
     operator render_settings<Other>() const;
 };
+
+/// alpha of eq. 6 in a step at a site of a run whose latents have this grid.
+template <class Real>
+Real alpha_at(render_settings<Real> const& settings, std::size_t step, attention_site const& site,
+              grid_extents latent_grid) {
+    auto const share = site.grid == latent_grid ? settings.latents_grid_alpha : Real(1);
+    return share > 0 ? share * settings.alpha(step, site) : Real(0);
+}
 
 /// Frames that a call of a pass over `frames` frames gives the denoiser, but for a shorter last one.
 template <class Real>

@@ -52,6 +52,9 @@ public:
                       render_settings<real_type> const& settings, any_loop loop, progress_meter& meter,
                       report_writer& report, Method method = {}, strided_view<std::uint8_t const, 3> shares = {})
         : run_{&phi, &maps, &settings, std::move(loop), &meter, &report}, normalizer_(phi, background), shares_(shares),
+          open_background_(has_background_consensus(settings)
+                               ? open_background(background, settings.consensus.background_distance)
+                               : tensor<std::uint8_t, 3>()),
           sigmas_(sigmas), method_(std::move(method)) {}
 
     /// The clean estimates of all frames of z [frames, channels, height, width] at noise level sigmas[step]; a second
@@ -62,7 +65,9 @@ public:
         method_(sequence_passes<Phi, Map>(run_, x0, z, sigma, step));
         require_finite(x0, step);
         if (has_consensus(*run_.settings, step)) { // In host memory: no engine lends it.
-            on_host(x0, [&](strided_view<real_type, 4> estimates) { reach_consensus(run_, estimates, shares_, step); });
+            on_host(x0, [&](strided_view<real_type, 4> estimates) {
+                reach_consensus(run_, estimates, {shares_, to_view(open_background_)}, step);
+            });
         }
         auto const& normalization = run_.settings->normalization;
         if (!normalization.on_noisy_latents) {
@@ -122,6 +127,7 @@ private:
     sequence_run<Phi, Map> run_;
     latent_normalizer<Phi> normalizer_;
     strided_view<std::uint8_t const, 3> shares_;
+    tensor<std::uint8_t, 3> open_background_;
     std::span<real_type const> sigmas_;
     Method method_;
 };

@@ -71,7 +71,9 @@ public:
     }
 
     /// alpha of eq. 6 at a site in this step.
-    real_type alpha(site_index site) const { return settings().alpha(step_, run_->phi->sites()[site.value]); }
+    real_type alpha(site_index site) const {
+        return alpha_at(settings(), step_, run_->phi->sites()[site.value], grid_extents(run_->phi->latent_grid()));
+    }
     /// What logits are multiplied by where frames are joined.
     auto logit_scale() const { return length_scale(run_->phi->sites(), settings().injection.length_correction); }
     /// An empty bank for features of all places.
