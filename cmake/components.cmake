@@ -306,7 +306,6 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/forward_pass.hpp
     reference/group_norm.hpp
     reference/group_norm.inl
-    reference/haar.hpp
     reference/image_tower.hpp
     reference/layer_norm.hpp
     reference/layer_norm.inl
@@ -321,10 +320,8 @@ genrender_component(reference PACKAGES nlohmann_json utf8proc HEADERS
     reference/panel_source.hpp
     reference/pickles.hpp
     reference/pipeline_files.hpp
-    reference/prompt_vocabulary.hpp
     reference/reference_clip.hpp
     reference/reference_network.hpp
-    reference/reference_weights.hpp
     reference/resampler.hpp
     reference/resnet_block.hpp
     reference/safetensors.hpp

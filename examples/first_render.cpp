@@ -3,7 +3,7 @@
 #include "scenes/camera_rotation.hpp"
 
 #include <genrender/scene/rasterizer.hpp>
-#include <genrender/reference/reference_network.hpp>
+#include <genrender/reference/stable_diffusion.hpp>
 
 #include <exception>
 
@@ -36,10 +36,15 @@ genrender::latents<float> stylise(Phi const& your_network, genrender::uv_maps co
 int main() {
     try {
         auto const guidance = genrender::rasterize(genrender::scenes::camera_rotation(4), {128, 128});
-        auto const hint = genrender::cell_means(genrender::sequence_inverse_depth(guidance.depth), {32, 32});
-        auto const network = genrender::reference_network<float>::seeded(to_view(hint), "camo", 7);
+        auto const nearness = genrender::cell_means(genrender::sequence_inverse_depth(guidance.depth), {64, 64});
+        // docs:begin pipeline_of_a_folder
+        genrender::reference::pipeline_files const files(GENRENDER_MINIATURE "/weights"); // or yours
+        genrender::reference::stable_diffusion<float> const pipeline(files);
+        auto const network = pipeline.network(pipeline.conditioning(to_view(nearness), {.text = "a red dotted ball"}));
         auto const z = stylise(network, guidance.uv);
-        return z.shape()[0] == 4 ? 0 : 1;
+        auto const pictures = pipeline.pictures(to_view(z)); // [frames, 3, height, width]
+        // docs:end
+        return pictures.extent(0) == 4 ? 0 : 1;
     } catch (std::exception const& error) {
         std::cerr << error.what() << "\n";
         return 1;

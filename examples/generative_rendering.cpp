@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The program that does it all, with Stable Diffusion, the reference denoiser, or an engine that is loaded: an animated scene
-// in, a stylised animation out.
+// The program that does it all, with Stable Diffusion or an engine that is loaded: an animated scene in, a stylised animation
+// out.
 #include "support/diffusion_model.hpp"
 #include "support/engine_library.hpp"
 #include "support/program.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Your own correspondence in place of the library's: points of a rolling ball in its rest pose, without any texture.
 #include <genrender/maps/uv_maps.hpp>
-#include <genrender/reference/reference_network.hpp>
+#include <genrender/reference/stable_diffusion.hpp>
 #include <genrender/pipeline/render.hpp>
 
 #include <glm/ext/matrix_transform.hpp>
@@ -81,7 +81,7 @@ static_assert(correspondence_map<rest_pose_map>);
 int main() try {
     // What a renderer would draw: UVs as on a globe, pinched at the poles, and how near the ball is.
     rolling_ball const ball{4};
-    grid_extents const pixels{64, 64};
+    grid_extents const pixels{128, 128};
     uv_maps maps(ball.frames, pixels);
     auto nearness = tensor<float, 3>::from_shape(maps.coverage.shape());
     nearness.fill(0);
@@ -100,7 +100,9 @@ int main() try {
     auto const UV = to_uv_view(maps);
 
     // Noise still comes from the UV maps; every feature resolution gets a map from `make_map`.
-    auto const network = reference_network<float>::seeded(to_view(nearness), "camo", 1, 1.0f);
+    stable_diffusion<float> const pipeline{pipeline_files(GENRENDER_MINIATURE "/weights")};
+    auto const network =
+        pipeline.network(pipeline.conditioning(to_view(nearness), {.text = "a red dotted ball", .guidance_scale = 1}));
     render_settings<float> settings;
     settings.steps = 2;
     settings.keyframes.count = 2;

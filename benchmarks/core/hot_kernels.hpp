@@ -14,12 +14,13 @@
 #include <genrender/reference/group_norm.hpp>
 #include <genrender/reference/layer_norm.hpp>
 #include <genrender/reference/linear.hpp>
-#include <genrender/reference/reference_weights.hpp>
 #include <genrender/reference/unet.hpp>
+#include <genrender/reference/weights.hpp>
 #include <genrender/sampling/classifier_free_guidance.hpp>
 #include <genrender/sampling/karras_schedule.hpp>
 #include <genrender/sampling/sampler.hpp>
 
+#include <benchmarks/support/miniature_config.hpp>
 #include <benchmarks/support/turning_world.hpp>
 
 #include <array>
@@ -197,14 +198,15 @@ inline kernel_run make_layer_norm() {
                                       [](auto const& layer, auto out, auto in) { layer(out, in); });
 }
 
-/// The UNet of the tiny network, random weights, one frame with latents of 32 x 32.
+/// The UNet of the miniature with random weights, one frame with latents of 32 x 32.
 inline kernel_run make_reference_network() {
     struct inputs {
-        reference::reference_weights<float> source = reference::reference_weights<float>::seeded(1);
+        reference::unet_config config = miniature_config();
+        reference::weights<float> source = reference::weights<float>::seeded(1, "unet");
         reference::site_list sites{{32, 32}};
-        reference::unet<float> network{source.config, source.unet, sites};
-        reference::feature_maps<float> z{1, {32, 32}, source.config.in_channels};
-        stack<float, 2> prompt = numbers<float, 2>({4, source.config.cross_attention_dim});
+        reference::unet<float> network{config, source, sites};
+        reference::feature_maps<float> z{1, {32, 32}, config.in_channels};
+        stack<float, 2> prompt = numbers<float, 2>({miniature_prompt_tokens, config.cross_attention_dim});
         std::vector<frame_index> frames{1};
         plain_attention plain;
         sequential_loop loop;

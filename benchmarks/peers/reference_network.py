@@ -14,10 +14,10 @@ from diffusers import ControlNetModel, UNet2DConditionModel
 
 from support.peer_times import peer_times, pytorch_name
 
-KERNELS = ["reference_network_tiny", "reference_network_mid"]
+KERNELS = ["reference_network_miniature", "reference_network_mid"]
 
 CASES = {  # block_out_channels[0], tokens of the prompt, [latents, frames, threads]
-    "reference_network_tiny": ("32", 4, [(32, 1, 1), (64, 1, 1), (32, 8, 1), (32, 1, 2), (64, 1, 2), (32, 8, 2)]),
+    "reference_network_miniature": ("48", 77, [(32, 1, 1), (64, 1, 1), (32, 8, 1), (32, 1, 2), (64, 1, 2), (32, 8, 2)]),
     "reference_network_mid": ("64", 77, [(32, 1, 1), (64, 1, 1), (32, 2, 1), (32, 1, 2), (64, 1, 2), (32, 2, 2)]),
 }
 

@@ -7,6 +7,7 @@
 #include <genrender/injection/injector.hpp>
 #include <genrender/reference/reference_network.hpp>
 
+#include "benchmarks/support/miniature_config.hpp"
 #include "benchmarks/support/on_threads.hpp"
 #include "benchmarks/support/paired_timing.hpp"
 
@@ -30,7 +31,7 @@ using benchmarks::time_against;
 namespace {
 
 constexpr std::size_t frame_count = 12;
-constexpr std::size_t size = 64; // pixels; latents have half as many
+constexpr std::size_t size = 64; // pixels; latents have a quarter as many
 
 /// A slope that a wave crosses, as large textures on it move to the side.
 struct wave {
@@ -55,7 +56,25 @@ struct wave {
 
 using network = reference_network<float>;
 
-/// One evaluation of the tiny network, with random weights, on so many threads.
+/// The miniature with random weights and a prompt of any numbers.
+network seeded_miniature(in_view<float, 3> inverse_depth, any_loop const& loop) {
+    auto const config = benchmarks::miniature_config();
+    auto unet_weights = weights<float>::seeded(1, "unet");
+    auto control_weights = weights<float>::seeded(1, "controlnet");
+    stack<float, 2> prompt({benchmarks::miniature_prompt_tokens, config.cross_attention_dim});
+    for (std::size_t e = 0; e < prompt.size(); ++e) {
+        prompt.data()[e] = static_cast<float>(e * 7919 % 1009) / 504.0F - 1;
+    }
+    return {config,
+            unet_weights,
+            control_weights,
+            {.hint = depth_hint<float>(inverse_depth, config.conditioning_channels),
+             .prompt = prompt,
+             .empty_prompt = stack<float, 2>(prompt.extents())},
+            loop};
+}
+
+/// One evaluation on so many threads.
 struct world {
     wave guidance;
     threaded_loop loop;
@@ -65,12 +84,11 @@ struct world {
     progress_meter meter{1, 1, {}};
     render_report report;
     report_writer writer{report};
-    latents<float> z = latents<float>::from_shape({frame_count, 12, size / 2, size / 2});
+    latents<float> z = latents<float>::from_shape({frame_count, 8, size / 4, size / 4});
     latents<float> x0 = z;
     std::vector<frame_index> KF{{2}, {9}, {5}, {0}};
 
-    explicit world(std::size_t threads)
-        : loop(threads), phi(network::seeded(guidance.inverse_depth, "stripes", 1, 2, loop)) {
+    explicit world(std::size_t threads) : loop(threads), phi(seeded_miniature(guidance.inverse_depth, loop)) {
         for (auto const& site : phi.sites()) {
             maps.add(site.grid, [&](grid_extents grid) {
                 return chosen_correspondence<2>(to_uv_view(guidance.maps), grid, settings.correspondence, loop);

@@ -5,8 +5,9 @@
 #include <genrender/core/tensor.hpp>
 #include <genrender/maps/depth_maps.hpp>
 #include <genrender/scene/rasterizer.hpp>
+#include <genrender/reference/pipeline_files.hpp>
 #include <genrender/reference/reference_network.hpp>
-#include <genrender/reference/reference_weights.hpp>
+#include <genrender/reference/stable_diffusion.hpp>
 
 #include <benchmarks/support/costless_denoiser.hpp>
 #include <benchmarks/support/median.hpp>
@@ -39,11 +40,11 @@ using namespace genrender::benchmarks;
 
 namespace {
 
-/// The walk of the demo, maps four times as large as its frames, and the trained tiny network.
+/// The walk of the demo with maps twice as large as its frames, and the miniature.
 class walk {
 public:
     walk(std::size_t frames, std::size_t size)
-        : guidance_(rasterize(scenes::walking_figure(frames), {4 * size, 4 * size}, loop_)), phi_(network(size)) {}
+        : guidance_(rasterize(scenes::walking_figure(frames), {2 * size, 2 * size}, loop_)), phi_(network(size)) {}
     walk(walk const&) = delete;
 
     uv_maps_view maps() const { return to_uv_view(guidance_.uv); }
@@ -53,12 +54,16 @@ public:
 private:
     reference_network<float> network(std::size_t size) {
         auto const nearness = cell_means(sequence_inverse_depth(guidance_.depth), {size, size});
-        return {weights_, weights_.conditioning(to_view(nearness), "stripes"), loop_};
+        return pipeline_.network(
+            pipeline_.conditioning(to_view(nearness),
+                                   {.text = "a red and white striped figure on green ground", .guidance_scale = 3},
+                                   loop_),
+            loop_);
     }
 
     threaded_loop loop_;
     rendered_guidance guidance_;
-    reference_weights<float> weights_ = reference_weights<float>::from_folder(GENRENDER_REFERENCE_DENOISER "/weights");
+    reference::stable_diffusion<float> pipeline_{pipeline_files(GENRENDER_MINIATURE "/weights")};
     reference_network<float> phi_;
 };
 
@@ -143,8 +148,7 @@ void library_at_stable_diffusion(benchmark::State& state) {
     auto const frames = static_cast<std::size_t>(state.range(0));
     auto const steps = static_cast<std::size_t>(state.range(1));
     device_run const run(frames);
-    auto const flops =
-        static_cast<double>(run.phi().branches()) * unet_flops(stable_diffusion(), run.phi().latent_grid(), 77);
+    auto const flops = static_cast<double>(run.phi().branches()) * unet_flops({}, run.phi().latent_grid(), 77);
     for (auto _ : state) {
         auto const before = product_rate(run.loop());
         auto const library = render_timed(run, settings_of(steps, 5)).total / static_cast<double>(frames * steps);
@@ -229,7 +233,7 @@ void measure_memory(benchmark::State& state, MakeRun const& make_run, render_set
     }
 }
 
-/// Of all that a run holds, features of the tiny network included, in few steps.
+/// Of all that a run holds, features of the miniature included, in few steps.
 void memory_of_run(benchmark::State& state) {
     auto const size = static_cast<std::size_t>(state.range(1));
     auto const steps = static_cast<std::size_t>(state.range(2));

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.1] One run of ControlNet and UNet, hint and all: the tiny network as it is shipped, and one shaped like
+// [GR sec. 3.1] One run of ControlNet and UNet, hint and all, with random weights: the miniature, and one shaped like
 // Stable Diffusion with a fifth of its channels. Its peer is benchmarks/peers/reference_network.py.
 #include <genrender/attention/plain_attention.hpp>
 #include <genrender/reference/controlnet.hpp>
+#include <genrender/reference/diffusers_config.hpp>
 #include <genrender/reference/forward_pass.hpp>
-#include <genrender/reference/reference_weights.hpp>
+#include <genrender/reference/safetensors_weights.hpp>
 #include <genrender/reference/unet.hpp>
+
+#include <benchmarks/support/miniature_config.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -13,8 +16,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace genrender;
@@ -26,17 +31,17 @@ namespace {
 /// All of Stable Diffusion 1.5 but the number of channels.
 unet_config mid_config() {
     unet_config config;
-    config.in_channels = config.out_channels = 4;
     config.block_out_channels = {64, 128, 256, 256};
-    config.level_has_attention = {true, true, true, false};
-    config.layers_per_block = 2;
-    config.attention_head_dim = {8, 8, 8, 8};
     config.cross_attention_dim = 256;
-    config.norm_num_groups = 32;
-    config.conditioning_channels = 3;
     config.conditioning_embedding_out_channels = {16, 32, 64, 128};
-    config.prediction_type = prediction::epsilon;
     return config;
+}
+
+/// Writes a network into a folder in diffusers' layout.
+void write_network(std::filesystem::path const& folder, nlohmann::json const& json, weights<float> const& tensors) {
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "config.json") << json;
+    write_weights((folder / "diffusion_pytorch_model.safetensors").string(), tensors);
 }
 
 struct networks {
@@ -44,13 +49,17 @@ struct networks {
     std::unique_ptr<controlnet<float>> control;
     std::unique_ptr<unet<float>> denoiser;
 
-    explicit networks(reference_weights<float> source) : config(source.config) {
+    explicit networks(unet_config of) : config(std::move(of)) {
+        auto control_weights = weights<float>::seeded(1, "controlnet");
+        auto unet_weights = weights<float>::seeded(1, "unet");
         site_list sites({64, 64});
-        control = std::make_unique<controlnet<float>>(config, source.controlnet, sites);
-        denoiser = std::make_unique<unet<float>>(config, source.unet, sites);
+        control = std::make_unique<controlnet<float>>(config, control_weights, sites);
+        denoiser = std::make_unique<unet<float>>(config, unet_weights, sites);
         // For the peer, which runs the same weights: the folder to write them to.
         if (auto const* folder = std::getenv("GENRENDER_NETWORK_FOLDER")) {
-            source.save(std::filesystem::path(folder) / std::to_string(config.block_out_channels.front()));
+            auto const path = std::filesystem::path(folder) / std::to_string(config.block_out_channels.front());
+            write_network(path / "controlnet", controlnet_json(config), control_weights);
+            write_network(path / "unet", unet_json(config), unet_weights);
         }
     }
 };
@@ -97,11 +106,11 @@ void run(benchmark::State& state, networks const& network, std::size_t prompt_to
     }
 }
 
-void reference_network_tiny(benchmark::State& state) {
-    static networks const network(reference_weights<float>::seeded(1));
-    run(state, network, 4);
+void reference_network_miniature(benchmark::State& state) {
+    static networks const network(benchmarks::miniature_config());
+    run(state, network, benchmarks::miniature_prompt_tokens);
 }
-BENCHMARK(reference_network_tiny)
+BENCHMARK(reference_network_miniature)
     ->ArgNames({"latents", "frames", "threads"})
     ->Args({32, 1, 1})
     ->Args({64, 1, 1})
@@ -114,7 +123,7 @@ BENCHMARK(reference_network_tiny)
     ->UseRealTime();
 
 void reference_network_mid(benchmark::State& state) {
-    static networks const network(reference_weights<float>::seeded(1, mid_config()));
+    static networks const network(mid_config());
     run(state, network, 77);
 }
 BENCHMARK(reference_network_mid)

@@ -28,21 +28,6 @@ void fill(View values) {
     }
 }
 
-unet_config sd15_config() {
-    unet_config config;
-    config.in_channels = config.out_channels = 4;
-    config.block_out_channels = {320, 640, 1280, 1280};
-    config.level_has_attention = {true, true, true, false};
-    config.layers_per_block = 2;
-    config.attention_head_dim = {8, 8, 8, 8};
-    config.cross_attention_dim = 768;
-    config.norm_num_groups = 32;
-    config.conditioning_channels = 3;
-    config.conditioning_embedding_out_channels = {16, 32, 96, 256};
-    config.prediction_type = prediction::epsilon;
-    return config;
-}
-
 void stable_diffusion_text(benchmark::State& state) {
     auto source = weights<float>::seeded(1, "text_encoder");
     clip_text_encoder<float> const encode({}, source);
@@ -54,7 +39,7 @@ void stable_diffusion_text(benchmark::State& state) {
 }
 
 void stable_diffusion_step(benchmark::State& state) {
-    auto const config = sd15_config();
+    unet_config const config;
     grid_extents const grid{64, 64};
     site_list sites(grid);
     auto control_source = weights<float>::seeded(1, "controlnet");

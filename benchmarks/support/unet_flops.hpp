@@ -12,19 +12,6 @@ namespace genrender::benchmarks {
 
 using namespace genrender::reference;
 
-/// The UNet of Stable Diffusion 1.5.
-inline unet_config stable_diffusion() {
-    unet_config config;
-    config.in_channels = config.out_channels = 4;
-    config.block_out_channels = {320, 640, 1280, 1280};
-    config.level_has_attention = {true, true, true, false};
-    config.layers_per_block = 2;
-    config.attention_head_dim = {8, 8, 8, 8};
-    config.cross_attention_dim = 768;
-    config.norm_num_groups = 32;
-    return config;
-}
-
 namespace detail {
 
 /// Sums up products; all are in multiply-adds.

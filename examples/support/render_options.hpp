@@ -49,7 +49,7 @@ struct render_options {
     prompt_options prompt;
     std::filesystem::path out;
     std::filesystem::path beside;                                    ///< an earlier run to compare with
-    std::filesystem::path pipeline = GENRENDER_MINIATURE "/weights"; ///< a folder, a file, or `random`
+    std::filesystem::path pipeline = GENRENDER_MINIATURE "/weights"; ///< a folder or a file
     std::filesystem::path engine;                                    ///< a library; empty: the pipeline
     std::filesystem::path controlnet;                                ///< empty: in the pipeline
     std::filesystem::path tokenizer;                                 ///< empty: in the pipeline
@@ -151,9 +151,8 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     of_models.add_option("--negative-prompt", options.prompt.negative, "what it shall not look like")
         ->type_name("TEXT");
     of_models
-        .add_option(
-            "--guidance", options.prompt.guidance_scale,
-            "scale of classifier-free guidance, 1 for none (7.5; 3 with the miniature, 2 with the reference denoiser)")
+        .add_option("--guidance", options.prompt.guidance_scale,
+                    "scale of classifier-free guidance, 1 for none (7.5; 3 with the miniature)")
         ->check(CLI::Range(0.0, 100.0).description(""))
         ->type_name("G");
     of_models
@@ -179,8 +178,8 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     of_models
         .add_option(
             "--size,--height", options.size,
-            "height of the frames in pixels, a multiple of 8 and of 64 with Stable Diffusion (what the model was\n"
-            "trained for: 64, 512); the width follows the input: the same, with --maps as they have it")
+            "height of the frames in pixels, a multiple of 16 with the miniature, of 64 with Stable Diffusion (what\n"
+            "the model was trained for: 128, 512); the width follows the input: the same, with --maps as they have it")
         ->check(positive)
         ->type_name("PX");
     of_models.add_option("--width", options.width, "width of the frames in pixels")->check(positive)->type_name("PX");
@@ -189,7 +188,7 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         ->capture_default_str()
         ->check(positive)
         ->type_name("N");
-    app.add_option("--seed", options.seed, "of noise, keyframes and random weights")
+    app.add_option("--seed", options.seed, "of noise and keyframes")
         ->check(not_negative)
         ->capture_default_str()
         ->type_name("S");
@@ -250,8 +249,7 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     of_pipeline
         ->add_option(
             "--pipeline", options.pipeline,
-            "a folder in diffusers' layout or a checkpoint in one file (the miniature that comes with the library),\n"
-            "or the word random: a small network without training")
+            "a folder in diffusers' layout or a checkpoint in one file (the miniature that comes with the library)")
         ->check(not_empty)
         ->type_name("DIR|FILE");
     of_pipeline
@@ -341,9 +339,6 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         }
         for (auto const& lora : loras) {
             options.loras.push_back(detail::lora_of(lora));
-        }
-        if (options.pipeline == "random" && of_pipeline->count_all() > 1) {
-            throw CLI::ValidationError("--pipeline", "random has no files for the other options of the model");
         }
         options.injection.start_from_preset(settings);
         options.correspondence.default_to(settings, app);

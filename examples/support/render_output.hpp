@@ -8,8 +8,6 @@
 #include "output_file.hpp"
 #include "pictures.hpp"
 
-#include <genrender/reference/haar.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -19,22 +17,6 @@
 #include <vector>
 
 namespace genrender::examples {
-
-using namespace genrender::reference;
-
-/// Images [frames, 3, height, width] in [0, 1] of latents [frames, 12, height / 2, width / 2].
-inline tensor<float, 4> decoded(latents<float> const& z) {
-    auto const& shape = z.shape();
-    auto images = tensor<float, 4>::from_shape({shape[0], shape[1] / 4, 2 * shape[2], 2 * shape[3]});
-    for (std::size_t i = 0; i < shape[0]; ++i) {
-        haar_decode(to_view(images)[i], to_view(z)[i]);
-    }
-    // As a picture file will hold them, so that errors are measured on what is seen.
-    for (auto& value : images) {
-        value = std::clamp(value, 0.0f, 1.0f);
-    }
-    return images;
-}
 
 /// `0007.png`
 inline std::string numbered_png(std::size_t frame) {

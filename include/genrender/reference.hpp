@@ -33,7 +33,6 @@
 #include <genrender/reference/feed_forward.hpp>
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/group_norm.hpp>
-#include <genrender/reference/haar.hpp>
 #include <genrender/reference/image_tower.hpp>
 #include <genrender/reference/layer_norm.hpp>
 #include <genrender/reference/linear.hpp>
@@ -47,10 +46,8 @@
 #include <genrender/reference/panel_source.hpp>
 #include <genrender/reference/pickles.hpp>
 #include <genrender/reference/pipeline_files.hpp>
-#include <genrender/reference/prompt_vocabulary.hpp>
 #include <genrender/reference/reference_clip.hpp>
 #include <genrender/reference/reference_network.hpp>
-#include <genrender/reference/reference_weights.hpp>
 #include <genrender/reference/resampler.hpp>
 #include <genrender/reference/resnet_block.hpp>
 #include <genrender/reference/safetensors.hpp>

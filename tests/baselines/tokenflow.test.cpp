@@ -2,7 +2,7 @@
 // [GR sec. 4: TokenFlow*] The baseline against a plain second writing of it, and whole runs.
 #include <genrender/baselines/tokenflow.hpp>
 
-#include "../reference/small_networks.hpp"
+#include "../reference/small_reference_network.hpp"
 #include "../support/dense_texture.hpp"
 #include <genrender/testing/sequence_method_laws.hpp>
 #include "small_baseline_run.hpp"
@@ -284,7 +284,7 @@ TEST_SUITE("baselines/tokenflow") {
         for (std::size_t e = 0; e < depth.size(); ++e) {
             depth.data()[e] = static_cast<float>(e % 7) / 7;
         }
-        auto const network = reference_network<float>::seeded(depth, "stripes", 1, 2, {}, small_config());
+        auto const network = seeded_network(small_conditioning<float>(depth, 1));
         auto const maps = random_scene(33, 3, {16, 24}, 2);
         std::size_t runs = 0;
         counting_network const phi{&network, &runs};

@@ -9,13 +9,19 @@ using namespace genrender::benchmarks;
 
 TEST_SUITE("benchmarks_support/unet_flops") {
     TEST_CASE("the count is that of torch.utils.flop_counter for diffusers' UNet of the same config") {
-        CHECK(unet_flops(stable_diffusion(), {64, 64}, 77) == 803273441280.0);
-        auto mid = stable_diffusion();
+        CHECK(unet_flops({}, {64, 64}, 77) == 803273441280.0);
+        unet_config mid;
         mid.block_out_channels = {64, 128, 256, 256};
         mid.cross_attention_dim = 256;
         CHECK(unet_flops(mid, {32, 32}, 77) == 8657780736.0);
         unet_config small;
+        small.in_channels = small.out_channels = 12;
         small.block_out_channels = {32, 64, 96};
+        small.level_has_attention = {false, true, false};
+        small.layers_per_block = 1;
+        small.attention_head_dim = {1, 2, 2};
+        small.cross_attention_dim = 48;
+        small.norm_num_groups = 8;
         CHECK(unet_flops(small, {32, 32}, 4) == 801013760.0);
     }
 
@@ -25,6 +31,7 @@ TEST_SUITE("benchmarks_support/unet_flops") {
         config.out_channels = 5;
         config.block_out_channels = {2};
         config.level_has_attention = {false};
+        config.layers_per_block = 1;
         config.attention_head_dim = {1};
         config.cross_attention_dim = 7;
         config.norm_num_groups = 1;

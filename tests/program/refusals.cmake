@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 # What the program generative_rendering refuses, with which exit code and which text on its error stream, in one run.
-# Run: cmake -D PROGRAM=<generative_rendering> -D MAPS_PROGRAM=<blender_maps> -D WEIGHTS=<folder> -D FOLDER=<scratch folder>
-#     -P refusals.cmake
+# Run: cmake -D PROGRAM=<generative_rendering> -D MAPS_PROGRAM=<blender_maps> -D FOLDER=<scratch folder> -P refusals.cmake
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${FOLDER})
 
@@ -28,8 +27,9 @@ endfunction()
 # Files that no run can use.
 set(broken ${FOLDER}/broken)
 file(WRITE ${broken}/text.obj "This is a letter and not a model.\n")
-file(COPY ${WEIGHTS} DESTINATION ${broken})
-file(WRITE ${broken}/weights/unet/diffusion_pytorch_model.safetensors "This is a letter and no weights at all.\n")
+set(tiny ${CMAKE_CURRENT_LIST_DIR}/../data/tiny_pipeline)
+file(COPY ${tiny} DESTINATION ${broken})
+file(WRITE ${broken}/tiny_pipeline/unet/diffusion_pytorch_model.safetensors "This is a letter and no weights at all.\n")
 file(WRITE ${broken}/maps/frame_0001.exr "This is a letter and not an image.\n")
 file(WRITE ${broken}/pictures/frame_0001.png "8 bits are not enough.\n")
 # A pickle begins so, in a zip or by itself.
@@ -42,14 +42,11 @@ execute_process(COMMAND ${MAPS_PROGRAM} walking_figure ${sequence} 3 256 OUTPUT_
 
 # 1: the arguments are fine and the work cannot be done; 2: the arguments are wrong.
 set(scene --scene camera_rotation)
-set(tiny ${CMAKE_CURRENT_LIST_DIR}/../data/tiny_pipeline)
 set(out --out ${FOLDER}/refused)
 refuses("a run without a prompt" 2 "--prompt" ${scene} ${out})
 refuses("a run without an input" 2 "--scene" --prompt dots ${out})
 refuses("two inputs" 2 "--scene" ${scene} --model a.obj --prompt dots ${out})
 refuses("an unknown scene" 2 "--scene: attic" --scene attic --prompt dots ${out})
-refuses("an unknown word" 2 "word is fur, expected one of plain stripes" ${scene} --prompt "fur" ${out}
-    --pipeline ${WEIGHTS})
 refuses("an unknown option" 2 "--colour" ${scene} --prompt dots ${out} --colour)
 refuses("zero frames" 2 "--frames" ${scene} --prompt dots ${out} --frames 0)
 refuses("more keyframes than frames" 2 "count is 9, expected 1 to the animation's 3 frames" ${scene} --prompt dots ${out}
@@ -95,7 +92,6 @@ refuses("a LoRA of no scale" 2 "--lora: scale is 'much'" ${scene} --prompt dots 
 refuses("a pickle" 1 "pickle" ${scene} --prompt dots ${out} --pipeline ${broken}/model.ckpt)
 refuses("a network of a folder as a pipeline" 1 "one network of a diffusers folder" ${scene} --prompt dots ${out}
     --pipeline ${tiny}/unet/diffusion_pytorch_model.safetensors)
-refuses("random weights and a LoRA" 2 "random has no files" ${scene} --prompt dots ${out} --pipeline random --lora a)
 refuses("all layers of the text encoder left out" 1 "skipped is 2, expected below the 2 layers" ${scene} --prompt dots
     ${out} --pipeline ${tiny} --clip-skip 2)
 refuses("a width that the maps do not have" 2 "--width: width is 64" --maps ${sequence} --prompt dots ${out} --size 128
@@ -146,7 +142,7 @@ refuses("an environment of maps" 2 "--background: environment is of EXR maps" --
 refuses("a comparison with nothing" 1 "report.json: is no report of a run" ${scene} --prompt dots ${out}
     --beside ${broken})
 refuses("foreign weights" 1 "diffusion_pytorch_model.safetensors" ${scene} --prompt dots ${out} --frames 2
-    --pipeline ${broken}/weights)
+    --pipeline ${broken}/tiny_pipeline)
 refuses("a folder without weights" 1 "unet" ${scene} --prompt dots ${out} --frames 2 --pipeline ${broken}/maps)
 refuses("an output folder that cannot be written" 1 "${broken}/file" ${scene} --prompt dots --out ${broken}/file)
 
@@ -158,7 +154,7 @@ refuses("an engine of another version" 2 "engine.version is 2, expected GENRENDE
     --engine ${ENGINE_OF_TOMORROW})
 refuses("an engine and a prompt" 2 "--engine: knows its own model, prompt" ${scene} --prompt dots ${out} --engine ${ENGINE})
 refuses("an engine and a pipeline" 2 "--engine: knows its own model, prompt" ${scene} ${out} --engine ${ENGINE}
-    --pipeline random)
+    --pipeline ${tiny})
 refuses("an engine and a size" 2 "--engine: knows its own model, prompt" ${scene} ${out} --engine ${ENGINE} --size 64)
 
 # A program with a denoiser of its own has no options for what that knows, in its help neither.
@@ -176,7 +172,7 @@ set(PROGRAM ${of_models})
 # What was written before a failure stays.
 file(MAKE_DIRECTORY ${broken}/run/report.json)
 refuses("to put a report where a folder is" 1 "report.json" ${scene} --out ${broken}/run
-    --prompt camo --frames 3 --size 64 --steps 2 --quiet)
+    --prompt dots --frames 3 --size 64 --steps 2 --quiet)
 if(NOT EXISTS ${broken}/run/frames/0002.png)
     fails("${broken}/run/frames/0002.png: was written before the failure and is not there")
 endif()

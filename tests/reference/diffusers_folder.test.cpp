@@ -5,6 +5,7 @@
 #include "golden_case.hpp"
 #include "golden_network.hpp"
 #include "small_networks.hpp"
+#include "written_networks.hpp"
 
 #include <doctest/doctest.h>
 
@@ -28,18 +29,6 @@ struct test_folder {
     test_folder() { std::filesystem::create_directories(path / "text_encoder"); }
 
     void write(std::string const& name, std::string const& text) const { std::ofstream(path / name) << text; }
-    void touch(std::string const& name) const { write(name, ""); }
-
-    /// A vocabulary of two words, or what is told instead.
-    void write_vocabulary(std::string const& json, std::vector<std::size_t> const& shape = {3, 2}) const {
-        write("text_encoder/config.json", json);
-        std::vector<float> const values{0, 1, 2, 3, 4, 5};
-        write_safetensors((path / "text_encoder" / "model.safetensors").string(),
-                          {{"token_embedding.weight", {shape, values}}});
-    }
-    std::string config_text(std::string const& sentence) const {
-        return (path / "text_encoder" / "config.json").string() + ": " + sentence;
-    }
 };
 
 } // namespace
@@ -163,47 +152,45 @@ TEST_SUITE("reference/diffusers_folder") {
         }
     }
 
-    TEST_CASE_TEMPLATE("the words of a folder replace the default ones", Real, float, double) {
-        test_folder const folder;
-        folder.write_vocabulary(R"({"_class_name": "PromptVocabulary", "words": ["gold", "silk"], "hidden_size": 2})");
-        auto const vocabulary = diffusers_folder(folder.path).template vocabulary<Real>(2);
-        REQUIRE(vocabulary);
-        CHECK(vocabulary->words() == std::vector<std::string>{"gold", "silk"});
-        CHECK((*vocabulary)("Silk")(1, 1) == 5);
+    TEST_CASE_TEMPLATE("networks that were written are read to the bit", Real, float, double) {
+        written_networks const written;
+        diffusers_folder const files(written.path());
+        auto const config = files.config();
+        CHECK(unet_json(config) == unet_json(small_config()));
+        CHECK(controlnet_json(config) == controlnet_json(small_config()));
+        CHECK(config.prediction_type == prediction::clean);
+        auto denoising = files.template unet<Real>();
+        auto control = files.template controlnet<Real>();
+        build_networks(config, denoising, control);
+        CHECK(denoising.values() == written.unet_weights.values());
+        CHECK(denoising.parameter_count() == written.unet_weights.parameter_count());
+        CHECK(control.values() == written.control_weights.values());
     }
 
-    TEST_CASE("another text encoder is left to the caller") {
-        test_folder const folder;
-        diffusers_folder const files(folder.path);
-        CHECK(!files.vocabulary<float>(2));
-        folder.write("text_encoder/config.json", R"({"architectures": ["CLIPTextModel"], "hidden_size": 768})");
-        CHECK(!files.vocabulary<float>(2));
+    TEST_CASE("half the precision is near") {
+        written_networks const written(safetensors_storage::f16);
+        auto loaded = diffusers_folder(written.path()).unet<float>();
+        auto const name = std::string("mid_block.resnets.0.conv1.weight");
+        auto const found = loaded.take(name, {12, 12, 3, 3});
+        auto const expected = written.unet_weights.values().at(name);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            CHECK(found[i] == doctest::Approx(expected[i]).epsilon(1e-3));
+        }
     }
 
-    TEST_CASE("a vocabulary that cannot be is refused") {
-        auto const check = [](std::string const& rest, std::string const& sentence) {
-            test_folder const folder;
-            folder.write_vocabulary(R"({"_class_name": "PromptVocabulary", )" + rest + "}");
-            CHECK_THROWS_WITH_AS(diffusers_folder(folder.path).vocabulary<float>(2),
-                                 folder.config_text(sentence).c_str(), file_error);
-        };
-        auto const words = std::string("words of lower-case letters and digits, each once");
-        check(R"("words": ["a", "b"], "hidden_size": 3)",
-              "option hidden_size is 3, expected 2, the UNet's cross_attention_dim");
-        check(R"("words": ["a", "B"], "hidden_size": 2)", "option words is [\"a\",\"B\"], expected " + words);
-        check(R"("words": ["a b"], "hidden_size": 2)", "option words is [\"a b\"], expected " + words);
-        check(R"("words": ["a", "a"], "hidden_size": 2)", "option words is [\"a\",\"a\"], expected " + words);
-        check(R"("words": [""], "hidden_size": 2)", "option words is [\"\"], expected " + words);
-        check(R"("hidden_size": 2)", "option words is absent, expected at least one");
-        check(R"("words": ["a", "b"], "hidden_size": 2, "layers": 12)", "1 options are unknown: layers, expected none");
-        test_folder const folder;
-        folder.write_vocabulary(R"({"_class_name": "PromptVocabulary", "words": ["a", "b"], "hidden_size": 2})",
-                                {2, 3});
-        CHECK_THROWS_WITH_AS(diffusers_folder(folder.path).vocabulary<float>(2),
-                             ((folder.path / "text_encoder" / "model.safetensors").string() +
-                              ": tensor token_embedding.weight is [2, 3], expected [3, 2]")
+    TEST_CASE("the ControlNet may lie in a folder of its own") {
+        written_networks const written;
+        temporary_file const elsewhere("controlnet");
+        std::filesystem::rename(written.path() / "controlnet", elsewhere.path());
+        CHECK_THROWS_WITH_AS(diffusers_folder(written.path()).config(),
+                             ((written.path() / "controlnet" / "config.json").string() +
+                              ": file cannot be opened, expected a readable JSON file")
                                  .c_str(),
                              file_error);
+        diffusers_folder const files(written.path(), elsewhere.path());
+        auto denoising = files.unet<float>();
+        auto control = files.controlnet<float>();
+        CHECK_NOTHROW(build_networks(files.config(), denoising, control));
     }
 
     TEST_CASE("an architecture that the weights do not have is told by a tensor's name") {

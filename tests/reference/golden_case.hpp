@@ -40,7 +40,7 @@ struct golden_case {
     golden_output controlled;    ///< with it
 };
 
-/// The tiny reference network, a small Stable Diffusion 1.5, a small 2.x, and one whose ways down and up differ.
+/// A tiny one whose hint is as large as the latents, a small Stable Diffusion 1.5, a small 2.x, and one whose ways down and up differ.
 inline std::array<golden_case, 4> const& golden_cases() {
     static std::array<golden_case, 4> const cases = [] {
         auto const file = golden_file("diffusers.json");

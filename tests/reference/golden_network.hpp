@@ -111,6 +111,18 @@ inline void write_golden_folder(std::filesystem::path const& folder, golden_case
 
 /// The configuration of each case as it is written in C++, in the order of golden_cases().
 inline std::array<unet_config, 4> golden_configs() {
+    unet_config tiny;
+    tiny.in_channels = tiny.out_channels = 12;
+    tiny.block_out_channels = {32, 64, 56};
+    tiny.level_has_attention = {false, true, false};
+    tiny.layers_per_block = 1;
+    tiny.attention_head_dim = {1, 2, 2};
+    tiny.cross_attention_dim = 48;
+    tiny.norm_num_groups = 8;
+    tiny.conditioning_channels = 4;
+    tiny.conditioning_embedding_out_channels = {32};
+    tiny.prediction_type = prediction::velocity;
+
     unet_config small_sd15;
     small_sd15.in_channels = small_sd15.out_channels = 4;
     small_sd15.block_out_channels = {16, 24, 32, 32};
@@ -135,18 +147,21 @@ inline std::array<unet_config, 4> golden_configs() {
     small_sd2.norm_num_groups = 4;
     small_sd2.conditioning_channels = 3;
     small_sd2.conditioning_embedding_out_channels = {4, 6};
+    small_sd2.prediction_type = prediction::velocity;
 
     unet_config uneven;
     uneven.in_channels = uneven.out_channels = 4;
     uneven.block_out_channels = {8, 12};
     uneven.level_has_attention = {false, true};
     uneven.level_has_attention_up = {true, false};
+    uneven.layers_per_block = 1;
     uneven.attention_head_dim = {1, 3};
     uneven.cross_attention_dim = 6;
     uneven.norm_num_groups = 4;
     uneven.conditioning_channels = 3;
     uneven.conditioning_embedding_out_channels = {2, 4};
-    return {unet_config{}, small_sd15, small_sd2, uneven};
+    uneven.prediction_type = prediction::velocity;
+    return {tiny, small_sd15, small_sd2, uneven};
 }
 
 } // namespace genrender::testing

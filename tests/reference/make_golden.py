@@ -71,7 +71,7 @@ def case(name, *, grid, tokens, t, scale, embedding, out_channels, ups=None, une
 
 
 cases = [
-    # The tiny reference network, the defaults of unet_config.
+    # Twelve channels, attention at one level and the bottom, a hint as large as the latents.
     case("tiny", grid=(16, 24), tokens=3, t=417.5, scale=1.0, embedding=(32,), in_channels=12, out_channels=12,
          block_out_channels=(32, 64, 56), layers_per_block=1, attention_head_dim=(1, 2, 2), cross_attention_dim=48,
          norm_num_groups=8, down_block_types=("DownBlock2D", "CrossAttnDownBlock2D", "DownBlock2D"),

@@ -4,10 +4,12 @@
 
 #include <genrender/testing/denoiser_laws.hpp>
 #include "../support/random_scene.hpp"
-#include "small_networks.hpp"
+#include "small_reference_network.hpp"
+#include "written_networks.hpp"
 
 #include <genrender/keyframes/recorder.hpp>
 #include <genrender/pipeline/render.hpp>
+#include <genrender/reference/diffusers_folder.hpp>
 
 #include <doctest/doctest.h>
 
@@ -44,8 +46,8 @@ stack<float, 3> moving_box() {
 }
 
 template <class Real>
-reference_network<Real> small_network(char const* prompt = "stripes", Real guidance = 2, any_loop loop = {}) {
-    return reference_network<Real>::seeded(moving_box(), prompt, 1, guidance, loop, small_config());
+reference_network<Real> small_network(std::uint64_t prompt = 1, Real guidance = 2, any_loop loop = {}) {
+    return seeded_network(small_conditioning<Real>(moving_box(), prompt, guidance), 1, std::move(loop));
 }
 
 template <class Network, class Real>
@@ -119,7 +121,7 @@ TEST_SUITE("reference/reference_network") {
             }
         }
         for (std::size_t const threads : {1U, 2U, 3U}) {
-            auto const threaded = small_network<Real>("stripes", 2, threaded_loop(threads));
+            auto const threaded = small_network<Real>(1, 2, threaded_loop(threads));
             CHECK(largest_difference(estimate_of(threaded, z, Real(3)), together) == 0);
         }
     }
@@ -160,9 +162,9 @@ TEST_SUITE("reference/reference_network") {
 
     TEST_CASE_TEMPLATE("guidance goes from the empty prompt past the prompt", Real, float, double) {
         auto const z = random_stack<Real, 4>({3, 4, 4, 6}, 2);
-        auto const guided = small_network<Real>("dots", 3);
-        auto const cond = small_network<Real>("dots", 1);
-        auto const uncond = small_network<Real>("", 1);
+        auto const guided = small_network<Real>(2, 3);
+        auto const cond = small_network<Real>(2, 1);
+        auto const uncond = small_network<Real>(0, 1);
         CHECK(guided.branches() == 2);
         CHECK(cond.branches() == 1);
         auto const a = estimate_of(uncond, z, Real(1));
@@ -181,11 +183,10 @@ TEST_SUITE("reference/reference_network") {
         auto const base = estimate_of(small_network<float>(), z, 1.0f);
         CHECK(largest_difference(
                   base, estimate_of(small_network<float>(), random_stack<float, 4>({3, 4, 4, 6}, 3), 1.0f)) > 0.05);
-        CHECK(largest_difference(base, estimate_of(small_network<float>("camo"), z, 1.0f)) > 0.05);
-        auto const flat =
-            reference_network<float>::seeded(stack<float, 3>({3, 8, 12}), "stripes", 1, 2, {}, small_config());
+        CHECK(largest_difference(base, estimate_of(small_network<float>(3), z, 1.0f)) > 0.05);
+        auto const flat = seeded_network(small_conditioning<float>(stack<float, 3>({3, 8, 12}), 1));
         CHECK(largest_difference(base, estimate_of(flat, z, 1.0f)) > 0.05);
-        auto const other = reference_network<float>::seeded(moving_box(), "stripes", 2, 2, {}, small_config());
+        auto const other = seeded_network(small_conditioning<float>(moving_box(), 1), 2);
         CHECK(largest_difference(base, estimate_of(other, z, 1.0f)) > 0.05);
     }
 
@@ -194,7 +195,7 @@ TEST_SUITE("reference/reference_network") {
         auto config = small_config();
         auto const with = [&](prediction predicted) {
             config.prediction_type = predicted;
-            return estimate_of(reference_network<Real>::seeded(moving_box(), "checker", 1, 1, {}, config), z, Real(2));
+            return estimate_of(seeded_network(small_conditioning<Real>(moving_box(), 4, 1), 1, {}, config), z, Real(2));
         };
         auto const F = with(prediction::clean);
         auto const velocity = with(prediction::velocity);
@@ -205,23 +206,12 @@ TEST_SUITE("reference/reference_network") {
         check_close<Real const, 4>(velocity.view(), expected.view());
     }
 
-    TEST_CASE("the tiny reference network has at most two million parameters") {
-        auto unet_weights = weights<float>::seeded(1, "unet");
-        auto control_weights = weights<float>::seeded(1, "controlnet");
-        site_list sites({32, 32});
-        unet<float> const network(unet_config{}, unet_weights, sites);
-        controlnet<float> const control(unet_config{}, control_weights, sites);
-        auto const count = unet_weights.parameter_count() + control_weights.parameter_count();
-        CHECK(count > 1'000'000);
-        CHECK(count <= 2'000'000);
-    }
-
-    TEST_CASE("the network of a folder is told of time and noise as its scheduler says") {
+    TEST_CASE("the network is told of time and noise as its config says of the training") {
         auto config = small_config();
         auto const z = random_stack<float, 4>({3, 4, 4, 6}, 2);
         auto const of_steps = [&](std::size_t steps) {
             config.num_train_timesteps = steps;
-            return estimate_of(reference_network<float>::seeded(moving_box(), "dots", 1, 1, {}, config), z, 1.0f);
+            return estimate_of(seeded_network(small_conditioning<float>(moving_box(), 2, 1), 1, {}, config), z, 1.0f);
         };
         auto const base = of_steps(1000);
         CHECK(largest_difference(base, of_steps(100)) > 1e-3);
@@ -231,17 +221,17 @@ TEST_SUITE("reference/reference_network") {
         CHECK_THROWS_AS(of_steps(1000), value_error);
     }
 
-    TEST_CASE_TEMPLATE("a folder gives the network that was saved to it", Real, float, double) {
-        temporary_file const folder("network");
+    TEST_CASE_TEMPLATE("networks of a folder give the estimate of those that were written", Real, float, double) {
+        written_networks const written;
         auto const z = random_stack<Real, 4>({3, 4, 4, 6}, 2);
-        auto source = reference_weights<Real>::seeded(5, small_config());
-        auto const expected =
-            estimate_of(reference_network<Real>(source, source.conditioning(moving_box(), "red dots", 3)), z, Real(2));
-        source.save(folder.path());
-        auto const network = reference_network<Real>::from_folder(folder.path(), moving_box(), "red dots", 3);
+        auto const expected = estimate_of(seeded_network(small_conditioning<Real>(moving_box(), 5, 3), 3), z, Real(2));
+        diffusers_folder const files(written.path());
+        auto unet_weights = files.template unet<Real>();
+        auto control_weights = files.template controlnet<Real>();
+        reference_network<Real> const network(files.config(), unet_weights, control_weights,
+                                              small_conditioning<Real>(moving_box(), 5, 3));
         CHECK(network.config().prediction_type == prediction::clean);
         CHECK(largest_difference(expected, estimate_of(network, z, Real(2))) == 0);
-        CHECK_THROWS_AS(reference_network<Real>::from_folder(folder.path(), moving_box(), "marble"), value_error);
     }
 
     TEST_CASE("what does not fit is refused by name") {
@@ -257,24 +247,20 @@ TEST_SUITE("reference/reference_network") {
                              "reference_network: z is [1, 4, 4, 4], expected [1, 4, 4, 6]", shape_error);
         CHECK_THROWS_AS(run(z, -1, 0), value_error);
 
-        auto const build = [](std::size_t height, std::size_t width, char const* prompt) {
-            return reference_network<float>::seeded(stack<float, 3>({1, height, width}), prompt, 1, 2, {},
-                                                    small_config());
+        auto const build = [](std::size_t frames, std::size_t height, std::size_t width) {
+            return seeded_network(small_conditioning<float>(stack<float, 3>({frames, height, width}), 0));
         };
-        CHECK_THROWS_WITH_AS(build(8, 9, ""), "reference_network: width of hint is 9, expected a multiple of 2",
+        CHECK_THROWS_WITH_AS(build(1, 8, 9), "reference_network: width of hint is 9, expected a multiple of 2",
                              value_error);
-        CHECK_THROWS_WITH_AS(build(6, 8, ""),
+        CHECK_THROWS_WITH_AS(build(1, 6, 8),
                              "unet_config: height of the latents is 3, expected a multiple of 2 above 0", value_error);
-        CHECK_THROWS_AS(build(8, 8, "a castle"), value_error);
-        CHECK_THROWS_WITH_AS(
-            (reference_network<float>::seeded(stack<float, 3>({0, 8, 8}), "", 1, 2, {}, small_config())),
-            "reference_network: frames of hint is 0, expected at least 1", value_error);
+        CHECK_THROWS_WITH_AS(build(0, 8, 8), "reference_network: frames of hint is 0, expected at least 1",
+                             value_error);
 
-        auto all = reference_weights<float>::seeded(1, small_config());
-        auto conditioning = all.conditioning(moving_box(), "");
+        auto conditioning = small_conditioning<float>(moving_box(), 0);
         conditioning.prompt = stack<float, 2>({2, 7});
-        CHECK_THROWS_WITH_AS((reference_network<float>(all, conditioning)),
-                             "reference_network: prompt is [2, 7], expected [2, 6]", shape_error);
+        CHECK_THROWS_WITH_AS(seeded_network(conditioning), "reference_network: prompt is [2, 7], expected [2, 6]",
+                             shape_error);
     }
 
     TEST_CASE("a call ends behind the last wanted site of each branch") {
@@ -367,10 +353,10 @@ TEST_SUITE("reference/reference_network") {
     TEST_CASE("hints that are not kept give the same estimate to the bit") {
         auto const z = random_stack<float, 4>({3, 4, 4, 6}, 2);
         auto const with = [&](std::size_t hint_bytes) {
-            auto source = reference_weights<float>::seeded(1, small_config());
-            auto conditioning = source.conditioning(moving_box(), "stripes");
-            return estimate_of(reference_network<float>(small_config(), source.unet, source.controlnet,
-                                                        std::move(conditioning), {}, hint_bytes),
+            auto unet_weights = weights<float>::seeded(1, "unet");
+            auto control_weights = weights<float>::seeded(1, "controlnet");
+            return estimate_of(reference_network<float>(small_config(), unet_weights, control_weights,
+                                                        small_conditioning<float>(moving_box(), 1), {}, hint_bytes),
                                z, 1.0f);
         };
         CHECK(largest_difference(with(std::size_t{1} << 26), with(0)) == 0);

@@ -34,6 +34,7 @@ inline unet_config small_config() {
     config.out_channels = 4;
     config.block_out_channels = {8, 12};
     config.level_has_attention = {true, false};
+    config.layers_per_block = 1;
     config.attention_head_dim = {2, 3};
     config.cross_attention_dim = 6;
     config.norm_num_groups = 4;

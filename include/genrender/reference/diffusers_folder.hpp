@@ -7,22 +7,17 @@
 #include <genrender/reference/config_file.hpp>
 #include <genrender/reference/diffusers_config.hpp>
 #include <genrender/reference/model_part.hpp>
-#include <genrender/reference/prompt_vocabulary.hpp>
 #include <genrender/reference/tensor_place.hpp>
 #include <genrender/reference/unet_config.hpp>
 #include <genrender/reference/weight_files.hpp>
 #include <genrender/reference/weights.hpp>
 
-#include <algorithm>
 #include <array>
 #include <concepts>
-#include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 namespace genrender::reference {
 
@@ -98,9 +93,7 @@ inline void refuse_foreign_pipeline(std::filesystem::path const& folder) {
 ///     scheduler/                 scheduler_config.json
 ///     text_encoder/              config.json, model.safetensors
 ///
-/// where the ControlNet may be a folder of its own, weights may lie in shards or as variants (see find_weights), and the
-/// text encoder may be a prompt_vocabulary: its config.json is `{"_class_name": "PromptVocabulary", "words": ["stripes", ...], "hidden_size": 48}` and its only
-/// tensor `token_embedding.weight` [1 + words, hidden_size].
+/// where the ControlNet may be a folder of its own, and weights may lie in shards or as variants (see find_weights).
 class diffusers_folder {
 public:
     /// Reads no file yet. `controlnet` is by default the folder of that name inside. With a `variant`, say `fp16`, all
@@ -152,33 +145,6 @@ public:
     template <std::floating_point Real>
     weights<Real> controlnet() const {
         return tensors<Real>(model_part::controlnet);
-    }
-
-    /// The text encoder, or nothing if there is none or one of another class than PromptVocabulary, whose tokens the
-    /// caller must make. Throws file_error if its files do not hold what they should, among them tokens of as many
-    /// `channels` as the UNet attends to.
-    template <std::floating_point Real>
-    std::optional<prompt_vocabulary<Real>> vocabulary(std::size_t channels) const {
-        auto const folder = folder_ / "text_encoder";
-        if (!std::filesystem::exists(folder / "config.json")) {
-            return std::nullopt;
-        }
-        config_file file(folder / "config.json");
-        if (file["_class_name"] != "PromptVocabulary") {
-            return std::nullopt;
-        }
-        auto words = file.texts("words", {});
-        for (auto const& word : words) {
-            auto const is_fine = internal::is_prompt_word(word) && std::count(words.begin(), words.end(), word) == 1;
-            file.require(is_fine, "words", "words of lower-case letters and digits, each once");
-        }
-        file.require(!words.empty(), "words", "at least one");
-        file.require(file.count("hidden_size", 0) == channels, "hidden_size",
-                     std::to_string(channels) + ", the UNet's cross_attention_dim");
-        file.ignore({"_class_name", "_diffusers_version", "_name_or_path"});
-        file.require_all_taken();
-        auto source = tensors<Real>(model_part::text_encoder);
-        return prompt_vocabulary<Real>(source, channels, std::move(words));
     }
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3.1] Stable Diffusion in miniature: a UNet and a depth ControlNet on the CPU, a model of denoiser.
+// [GR sec. 3.1] Stable Diffusion's UNet and a ControlNet for depth on the CPU, in any size: a model of denoiser.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
@@ -12,8 +12,10 @@
 #include <genrender/reference/encoded_frames.hpp>
 #include <genrender/reference/forward_pass.hpp>
 #include <genrender/reference/network_conditioning.hpp>
-#include <genrender/reference/reference_weights.hpp>
+#include <genrender/reference/site_list.hpp>
 #include <genrender/reference/unet.hpp>
+#include <genrender/reference/unet_config.hpp>
+#include <genrender/reference/weights.hpp>
 #include <genrender/sampling/classifier_free_guidance.hpp>
 #include <genrender/sampling/denoiser.hpp>
 #include <genrender/sampling/noise_schedule.hpp>
@@ -21,12 +23,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -43,8 +43,8 @@ public:
     using features_type = host_features<Real>;   ///< features in host memory
     using residuals_type = encoded_frames<Real>; ///< what the encoder leaves to the decoder
 
-    /// Takes the weights of both networks (those of Stable Diffusion 1.5 and its ControlNet in diffusers' layout fit,
-    /// as do weights<Real>::seeded). Throws value_error if the config cannot be built, the latents' grid cannot be
+    /// Takes the weights of both networks: those of files (stable_diffusion makes the network of a whole pipeline), or
+    /// random ones (weights::seeded). Throws value_error if the config cannot be built, the latents' grid cannot be
     /// halved as often as the network does, or there is no frame; shape_error if the conditioning does not fit the
     /// config; file_error naming a tensor that is missing, misshapen or left over. Embedded hints are kept of as many
     /// frames as fit into `hint_bytes`, so that memory does not grow with the animation; others are embedded anew in
@@ -63,30 +63,6 @@ public:
         unet_ = std::make_shared<unet<Real> const>(config_, unet_weights, sites);
         sites_.assign(sites.sites().begin(), sites.sites().end());
         hints_ = {control_, std::exchange(conditioning_.hint, {}), hint_bytes, loop_};
-    }
-
-    /// The network of all its weights.
-    reference_network(reference_weights<Real>& source, network_conditioning<Real> conditioning, any_loop loop = {})
-        : reference_network(source.config, source.unet, source.controlnet, std::move(conditioning), std::move(loop)) {}
-
-    /// A network with random weights, by default the tiny one, for inverse depth [frames, height, width] in [0, 1] (see
-    /// hint_of) and a text of prompt_words. Throws as the constructor and prompt_rows do.
-    static reference_network seeded(strided_view<float const, 3> inverse_depth, std::string_view prompt,
-                                    std::uint64_t seed, Real guidance_scale = 2, any_loop loop = {},
-                                    unet_config const& config = {}) {
-        auto source = reference_weights<Real>::seeded(seed, config);
-        return {source, source.conditioning(inverse_depth, prompt, guidance_scale), std::move(loop)};
-    }
-
-    /// The network of a folder in diffusers' layout (see diffusers_folder), which says all about it; the ControlNet in
-    /// a folder of its own if that is named. The text is of the words of its vocabulary. Throws as the constructor,
-    /// reference_weights::from_folder and prompt_rows do.
-    static reference_network from_folder(std::filesystem::path const& folder,
-                                         strided_view<float const, 3> inverse_depth, std::string_view prompt,
-                                         Real guidance_scale = 2, any_loop loop = {},
-                                         std::filesystem::path const& controlnet_folder = {}) {
-        auto source = reference_weights<Real>::from_folder(folder, controlnet_folder);
-        return {source, source.conditioning(inverse_depth, prompt, guidance_scale), std::move(loop)};
     }
 
     /// The architecture that its weights are for.

@@ -103,7 +103,7 @@ public:
             std::vector<std::uint32_t> const numbers(ids.begin(), ids.end());
             return encode(numbers, loop, prompt.skipped_layers);
         };
-        return {.hint = hint_of<Real>(config_, inverse_depth),
+        return {.hint = depth_hint<Real>(inverse_depth, config_.conditioning_channels),
                 .prompt = rows_of(prompt.text),
                 .empty_prompt = rows_of(prompt.negative),
                 .guidance_scale = static_cast<Real>(prompt.guidance_scale),

@@ -15,28 +15,29 @@
 namespace genrender::reference {
 
 /// What diffusers' `UNet2DConditionModel` and `ControlNetModel` are built from, and what its scheduler says of their
-/// training. The defaults are the tiny reference network: 12 latent channels (RGB after one Haar transform), three
-/// levels, self-attention at the middle level and the bottom, a hint of the latents' size. With block_out_channels
-/// {320, 640, 1280, 1280}, norm_num_groups 32 and the like it is Stable Diffusion 1.5.
+/// training. The defaults are Stable Diffusion 1.5 and its ControlNet for depth.
 struct unet_config {
-    std::size_t in_channels = 12;                              ///< of the latents
-    std::size_t out_channels = 12;                             ///< of the prediction
-    std::vector<std::size_t> block_out_channels{32, 64, 56};   ///< from the finest level; each next halves the grid
-    std::vector<bool> level_has_attention{false, true, false}; ///< down_block_types: CrossAttnDownBlock2D, DownBlock2D
+    std::size_t in_channels = 4;  ///< of the latents
+    std::size_t out_channels = 4; ///< of the prediction
+    /// From the finest level; each next halves the grid.
+    std::vector<std::size_t> block_out_channels{320, 640, 1280, 1280};
+    /// down_block_types: CrossAttnDownBlock2D or DownBlock2D.
+    std::vector<bool> level_has_attention{true, true, true, false};
     std::vector<bool> level_has_attention_up{}; ///< of the way up, from the finest level too; empty: as on the way down
-    std::size_t layers_per_block = 1;           ///< resnets a level on the way down; one more on the way up
-    std::vector<std::size_t> attention_head_dim{1, 2, 2}; ///< a level; it is the *number* of heads, as in SD 1.5
-    std::size_t transformer_layers_per_block = 1;         ///< transformer blocks of every attention
-    bool use_linear_projection = false;                   ///< the ways in and out of attention are no convolutions
-    std::size_t cross_attention_dim = 48;                 ///< channels of a prompt token
-    std::size_t norm_num_groups = 8;                      ///< of every GroupNorm
-    std::size_t conditioning_channels = 4;                ///< of the ControlNet's hint
-    std::vector<std::size_t> conditioning_embedding_out_channels{32}; ///< each after the first halves the hint
+    std::size_t layers_per_block = 2;           ///< resnets a level on the way down; one more on the way up
+    std::vector<std::size_t> attention_head_dim{8, 8, 8, 8}; ///< a level; it is the *number* of heads, as in SD 1.5
+    std::size_t transformer_layers_per_block = 1;            ///< transformer blocks of every attention
+    bool use_linear_projection = false;                      ///< the ways in and out of attention are no convolutions
+    std::size_t cross_attention_dim = 768;                   ///< channels of a prompt token
+    std::size_t norm_num_groups = 32;                        ///< of every GroupNorm
+    std::size_t conditioning_channels = 3;                   ///< of the ControlNet's hint
+    /// Of the hint's way to the latents' size; each after the first halves it.
+    std::vector<std::size_t> conditioning_embedding_out_channels{16, 32, 96, 256};
 
-    prediction prediction_type = prediction::velocity; ///< what the output stands for
-    std::size_t num_train_timesteps = 1000;            ///< discrete noise levels of the training
-    double beta_start = 0.00085;                       ///< of scaled_linear_alphas_cumprod
-    double beta_end = 0.012;                           ///< of scaled_linear_alphas_cumprod
+    prediction prediction_type = prediction::epsilon; ///< what the output stands for
+    std::size_t num_train_timesteps = 1000;           ///< discrete noise levels of the training
+    double beta_start = 0.00085;                      ///< of scaled_linear_alphas_cumprod
+    double beta_end = 0.012;                          ///< of scaled_linear_alphas_cumprod
 
     /// Number of resolutions.
     std::size_t levels() const { return block_out_channels.size(); }
