@@ -36,8 +36,11 @@ inline constexpr std::array<std::size_t, 5> intervals{1, 5, 10, 15, 20};
 /// The same of a long sequence.
 inline constexpr std::array<std::size_t, 8> long_intervals{1, 5, 10, 20, 50, 100, 150, 200};
 
+/// Pixels around objects that are no open background: two cells of the miniature's latents, which its decoder mixes.
+inline constexpr std::size_t open_background_margin = 8;
+
 /// Raised when a measure changes its meaning, so that kept figures are not mixed.
-inline constexpr int measures_version = 1;
+inline constexpr int measures_version = 2;
 
 /// Features of every frame of `images` [frames, 3, height, width]: [frames, channels, rows, columns].
 inline stack<float, 4> frame_features(reference_clip<float> const& embedder, strided_view<float const, 4> images) {
@@ -97,6 +100,7 @@ inline measures measures_of(strided_view<float const, 4> images, evaluation_scen
     ask("pattern_recognised", pattern_question(caption));
     ask("colours_recognised", colours_question(caption));
     set("background_flicker", background_flicker(images, objects));
+    set("open_background_flicker", background_flicker(images, objects, open_background_margin));
     if (auto const change = colour_flicker(images)) {
         set("colour_flicker", change->mean);
         set("deviation_flicker", change->deviation);

@@ -62,6 +62,8 @@ inline row_settings settings_of(compared_row const& row, shared_settings const& 
 
 /// The paper to the letter.
 inline row_settings paper() { return row_settings::paper(); }
+/// Alg. 1 with the defaults' readings, and nothing besides.
+inline row_settings plain() { return row_settings::plain(); }
 /// Consistent and vivid.
 inline row_settings vivid() { return row_settings::vivid(); }
 /// Per-Frame with independent noise, as the paper has it.
@@ -79,10 +81,10 @@ inline row_settings baseline_uv() {
     return settings;
 }
 
-/// The same with the temperature that vivid has.
+/// The same with the length-corrected temperature.
 inline row_settings baseline_uv_corrected() {
     auto settings = baseline_uv();
-    settings.injection.length_correction = vivid().injection.length_correction;
+    settings.injection.length_correction = 1;
     return settings;
 }
 
@@ -126,6 +128,7 @@ inline std::vector<compared_row> compared_rows() {
         {"Pix2Video*, UV noise, temperature", "method", pix2video, baseline_uv_corrected},
         {"TokenFlow*, UV noise, temperature", "method", tokenflow, baseline_uv_corrected},
         {"paper", "method", generative_rendering, paper},
+        {"plain", "method", generative_rendering, plain},
         {"vivid", "method", generative_rendering, vivid},
 
         {"paper, no pre-attention", "ablation", generative_rendering, paper, [](s& x) { x.injection.pre_attention = false; }},
@@ -135,12 +138,14 @@ inline std::vector<compared_row> compared_rows() {
         {"paper, independent noise", "ablation", generative_rendering, paper, [](s& x) { x.noise.kind = noise_kind::independent; }},
         {"vivid, no pre-attention", "ablation", generative_rendering, vivid, [](s& x) { x.injection.pre_attention = false; }},
         {"vivid, no post-attention", "ablation", generative_rendering, vivid, [](s& x) { x.injection.post_attention = false; }},
+        {"vivid, eq. 6 at the latents' grid too", "ablation", generative_rendering, vivid, [](s& x) { x.latents_grid_alpha = 1; }},
         {"vivid, no consensus", "ablation", generative_rendering, vivid, [](s& x) { x.consensus.enabled = false; }},
-        {"vivid, no temperature", "ablation", generative_rendering, vivid, [](s& x) { x.injection.length_correction = 0; }},
-        {"vivid, variance not kept", "ablation", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::none; }},
+        {"vivid, no consensus of the background", "ablation", generative_rendering, vivid, [](s& x) { x.consensus.agrees_on_background = false; }},
+        {"vivid, temperature", "ablation", generative_rendering, vivid, [](s& x) { x.injection.length_correction = 1; }},
+        {"vivid, variance kept", "ablation", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::sources; }},
         {"vivid, no normalisation", "ablation", generative_rendering, vivid, [](s& x) { x.normalization.enabled = false; }},
         {"vivid, fixed noise", "ablation", generative_rendering, vivid, [](s& x) { x.noise.kind = noise_kind::fixed; }},
-        {"vivid, plain average", "ablation", generative_rendering, vivid, [](s& x) { x.average = texel_average::plain; }},
+        {"vivid, plain average", "ablation", generative_rendering, vivid, [](s& x) { x.average = x.consensus.average = texel_average::plain; }},
 
         {"Per-Frame, fixed noise", "noise", generative_rendering, alone_fixed},
         {"vivid, independent noise", "noise", generative_rendering, vivid, [](s& x) { x.noise.kind = noise_kind::independent; }},
@@ -160,30 +165,27 @@ inline std::vector<compared_row> compared_rows() {
         {"vivid, features by texels, T matched", "texels", generative_rendering, vivid, texels_of<0>},
 
         {"no consensus", "development", generative_rendering, vivid, [](s& x) { x.consensus.enabled = false; }},
-        {"no temperature", "development", generative_rendering, vivid, [](s& x) { x.injection.length_correction = 0; }},
-        {"variance not kept", "development", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::none; }},
-        {"variance total", "development", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::total; }},
-        {"none of the three", "development", generative_rendering, vivid, [](s& x) { x.consensus.enabled = false; x.injection.length_correction = 0; x.injection.variance.target = variance_target::none; }},
+        {"no consensus of the background", "development", generative_rendering, vivid, [](s& x) { x.consensus.agrees_on_background = false; }},
+        {"consensus in the first 40 %", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 0.4F; }},
+        {"consensus in the first 70 %", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 0.7F; }},
         {"consensus in all steps", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 1; }},
-        {"consensus in the first 30 %", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 0.3F; }},
         {"consensus to the silhouettes", "development", generative_rendering, vivid, [](s& x) { x.consensus.fades_at_silhouettes = false; }},
         {"consensus without variance", "development", generative_rendering, vivid, [](s& x) { x.consensus.most_gain = 1; }},
+        {"consensus by quality cubed", "development", generative_rendering, vivid, [](s& x) { x.consensus.quality = {.exponent_begin = 3, .exponent_end = 3}; }},
+        {"consensus of the best source", "development", generative_rendering, vivid, [](s& x) { x.consensus.average = texel_average::winner; }},
+        {"eq. 6 at the latents' grid, .4", "development", generative_rendering, vivid, [](s& x) { x.latents_grid_alpha = 0.4F; }},
+        {"eq. 6 at the latents' grid, 1", "development", generative_rendering, vivid, [](s& x) { x.latents_grid_alpha = 1; }},
+        {"the same, temperature, variance", "development", generative_rendering, vivid, [](s& x) { x.latents_grid_alpha = 1; x.injection.length_correction = 1; x.injection.variance.target = variance_target::sources; }},
+        {"no post-attention", "development", generative_rendering, vivid, [](s& x) { x.injection.post_attention = false; }},
+        {"no pre-attention", "development", generative_rendering, vivid, [](s& x) { x.injection.pre_attention = false; }},
+        {"temperature", "development", generative_rendering, vivid, [](s& x) { x.injection.length_correction = 1; }},
         {"points counted", "development", generative_rendering, vivid, [](s& x) { x.injection.counts_points = true; }},
-        {"quality to the power 0 to 6", "development", generative_rendering, vivid, [](s& x) { x.quality.exponent_begin = 0; x.quality.exponent_end = 6; }},
+        {"variance of sources", "development", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::sources; }},
         {"held keyframes", "development", generative_rendering, vivid, [](s& x) { x.keyframes.drawing = keyframe_drawing::held; }},
         {"means of all frames", "development", generative_rendering, vivid, [](s& x) { x.normalization.target = adain_target::all_frames; }},
         {"supported deviations", "development", generative_rendering, vivid, [](s& x) { x.normalization.statistics = adain_statistics::mean_and_supported_deviation; }},
-        {"no post-attention", "development", generative_rendering, vivid, [](s& x) { x.injection.post_attention = false; }},
-        {"no own copy", "development", generative_rendering, vivid, [](s& x) { x.injection.keeps_own_copy = false; }},
-        {"one keyframe", "development", generative_rendering, vivid, [](s& x) { x.keyframes.count = 1; }},
-        {"stratified keyframes", "development", generative_rendering, vivid, [](s& x) { x.keyframes.drawing = keyframe_drawing::stratified; }},
-        {"first fill 1", "development", generative_rendering, vivid, [](s& x) { x.first_fill_share = 1; }},
-        {"first fill 0", "development", generative_rendering, vivid, [](s& x) { x.first_fill_share = 0; }},
-        {"alpha .4", "development", generative_rendering, vivid, alpha_of<40>},
-        {"alpha .9", "development", generative_rendering, vivid, alpha_of<90>},
-        {"first 60 % of the steps", "development", generative_rendering, vivid, [](s& x) { x.window_end = 0.6F; }},
-        {"no normalisation", "development", generative_rendering, vivid, [](s& x) { x.normalization.enabled = false; }},
         {"mean and deviation", "development", generative_rendering, vivid, [](s& x) { x.normalization.statistics = adain_statistics::mean_and_deviation; }},
+        {"no normalisation", "development", generative_rendering, vivid, [](s& x) { x.normalization.enabled = false; }},
     };
     // clang-format on
 }

@@ -87,11 +87,12 @@ inline std::vector<study> full_studies() {
 
 /// What settings are chosen by.
 inline std::vector<study> development_studies() {
-    study variants{"development",
-                   "Variants of vivid on the development scenes",
-                   {"development"},
-                   {"Per-Frame, UV noise", "TokenFlow*, fixed noise", "TokenFlow*, UV noise", "paper", "vivid"},
-                   scene_set::development};
+    study variants{
+        "development",
+        "Variants of vivid on the development scenes",
+        {"development"},
+        {"Per-Frame, UV noise", "TokenFlow*, fixed noise", "TokenFlow*, UV noise", "paper", "plain", "vivid"},
+        scene_set::development};
     variants.captions = 2;
     return {variants};
 }

@@ -99,6 +99,7 @@ inline std::string study_tables(study const& of, std::span<run_figures const> ru
     add_intervals(embedded, "consistency", "Consistency", of.apart);
     embedded.push_back({"subject_consistency", "Subject consistency"});
     flickers = {{"background_flicker", "Background"},
+                {"open_background_flicker", "Away from objects"},
                 {"colour_flicker", "Mean colour"},
                 {"deviation_flicker", "Colour deviation"},
                 {"temporal_flicker", "Temporal flicker"}};
@@ -116,7 +117,8 @@ inline std::string study_tables(study const& of, std::span<run_figures const> ru
                                                 {"pattern_recognised", "Pattern"},
                                                 {"contrast", "Contrast"},
                                                 {"sharpness", "Sharpness"},
-                                                {"background_flicker", "Background flicker"}};
+                                                {"background_flicker", "Background flicker"},
+                                                {"open_background_flicker", "Away from objects"}};
     std::ostringstream text;
     auto const scenes = scenes_of(of);
     text << "# " << of.title << "\n\n"

@@ -40,10 +40,11 @@ struct consistency_options {
         auto* const with = group->add_flag_callback(
             "--consensus", [this] { has_consensus = true; },
             "clean estimates of all frames agree along the surfaces, between the method and latent\n"
-            "normalisation");
+            "normalisation (the preset vivid)");
         group
             ->add_flag_callback(
-                "--no-consensus", [this] { has_consensus = false; }, "they do not (default)")
+                "--no-consensus", [this] { has_consensus = false; },
+                "they do not (the presets plain and paper, and baselines)")
             ->excludes(with);
         group
             ->add_option("--consensus-window", window,

@@ -20,15 +20,15 @@
 namespace genrender::examples {
 
 /// Settings that have a name.
-enum class render_preset : std::uint8_t { paper, vivid };
+enum class render_preset : std::uint8_t { paper, plain, vivid };
 
 /// How alpha runs over the steps.
 enum class named_schedule : std::uint8_t { constant, fading, rising, early };
 
 /// What the options say, in the words of the command line.
 struct injection_options {
-    static constexpr named<render_preset> preset_names[]{{"paper", render_preset::paper},
-                                                         {"vivid", render_preset::vivid}};
+    static constexpr named<render_preset> preset_names[]{
+        {"paper", render_preset::paper}, {"plain", render_preset::plain}, {"vivid", render_preset::vivid}};
     static constexpr named<variance_target> variance_names[]{
         {"none", variance_target::none}, {"total", variance_target::total}, {"sources", variance_target::sources}};
     static constexpr named<named_schedule> schedule_names[]{{"constant", named_schedule::constant},
@@ -41,13 +41,14 @@ struct injection_options {
     /// The share of the steps that --alpha-schedule early has alpha in.
     static constexpr float early_share = 0.6f;
 
-    std::string preset;                ///< empty: the library's defaults
+    std::string preset = "vivid";
     std::optional<double> temperature; ///< none: the preset's, as with all that follow
     std::string variance;
     bool counts_points = false;
     std::string quality_exponent; ///< `P`, or `FROM:TO`
     std::optional<double> quality_threshold;
     float alpha = 0.7f;
+    std::optional<float> latents_grid_alpha;
     std::string schedule = "constant";
     std::string drawing = "uniform";
 
@@ -56,7 +57,7 @@ struct injection_options {
     void add_to(CLI::App& app, CLI::Option_group& ours) {
         app.add_option("--temperature", temperature,
                        "power of ln(keys) / ln(own keys) on the logits where frames attend to others: 0 none, 1 the\n"
-                       "length-corrected temperature, 0.5 its root (the preset's; 0 without one)")
+                       "length-corrected temperature, 0.5 its root (0)")
             ->type_name("P");
         auto const add = [&ours](char const* name, std::string& value, auto const& names, char const* text) {
             return ours.add_option(name, value, text)
@@ -64,10 +65,11 @@ struct injection_options {
                 ->type_name("KIND");
         };
         add("--preset", preset, preset_names,
-            "paper (to the letter: texels, plain averages, means and deviations) or vivid (temperature, variance\n"
-            "kept and the consensus of clean estimates); what else is told goes before it");
+            "vivid (a consensus of clean estimates, and eq. 6 on grids coarser than the latents'), plain (neither) or\n"
+            "paper (to the letter: texels, plain averages, means and deviations); what else is told goes before it")
+            ->capture_default_str();
         add("--variance", variance, variance_names,
-            "that eq. 6 keeps: none (the paper's), total (of all that is averaged) or sources (of keyframes)");
+            "that eq. 6 keeps: none (default), total (of all that is averaged) or sources (of keyframes)");
         ours.add_flag(
             "--count-points", counts_points,
             "keys that show one surface point count together for one (the logarithm of their number is taken off)");
@@ -75,6 +77,12 @@ struct injection_options {
             ->capture_default_str()
             ->check(CLI::Range(0.0, 1.0).description(""))
             ->type_name("A");
+        ours.add_option(
+                "--latents-grid-alpha", latents_grid_alpha,
+                "what alpha is multiplied by where features are as fine as latents, 0 to 1 (the preset's: 0 of\n"
+                "vivid, else 1)")
+            ->check(CLI::Range(0.0, 1.0).description(""))
+            ->type_name("SHARE");
         add("--alpha-schedule", schedule, schedule_names,
             "of alpha over the steps: constant, fading (to 0), rising (from 0), early (first 60 %)")
             ->capture_default_str();
@@ -92,15 +100,15 @@ struct injection_options {
             ->capture_default_str();
     }
 
-    /// The settings that everything else is told on top of. Steps stay.
+    /// The preset, that everything else is told on top of. Steps stay.
     template <class Real>
     void start_from_preset(render_settings<Real>& settings) const {
-        if (!preset.empty()) {
-            auto const steps = settings.steps;
-            settings = value_in(preset_names, preset) == render_preset::paper ? render_settings<Real>::paper()
-                                                                              : render_settings<Real>::vivid();
-            settings.steps = steps;
-        }
+        auto const steps = settings.steps;
+        auto const of = value_in(preset_names, preset);
+        settings = of == render_preset::paper   ? render_settings<Real>::paper()
+                   : of == render_preset::plain ? render_settings<Real>::plain()
+                                                : render_settings<Real>::vivid();
+        settings.steps = steps;
     }
 
     /// Turns `settings` to what was told. Throws CLI::ValidationError for numbers that are none or out of range, and
@@ -118,6 +126,7 @@ struct injection_options {
         if (!variance.empty()) {
             settings.injection.variance.target = value_in(variance_names, variance);
         }
+        settings.latents_grid_alpha = latents_grid_alpha.value_or(settings.latents_grid_alpha);
         settings.injection.counts_points = settings.injection.counts_points || counts_points;
         if (!quality_exponent.empty()) {
             auto const [from, to] = exponents();

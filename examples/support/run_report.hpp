@@ -117,8 +117,9 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
         told["average"] = name_in(correspondence_options::average_names, settings.average);
         told["quality_exponent"] = {settings.quality.exponent_begin, settings.quality.exponent_end};
         told["quality_threshold"] = settings.quality.threshold;
-        told["preset"] = injected.preset.empty() ? "none" : injected.preset;
+        told["preset"] = injected.preset;
         told["alpha"] = injected.alpha;
+        told["latents_grid_alpha"] = settings.latents_grid_alpha;
         told["alpha_schedule"] = injected.schedule;
         told["keyframe_drawing"] = injected.drawing;
         told["counts_points"] = settings.injection.counts_points;

@@ -193,7 +193,7 @@ TEST_SUITE("adapters/torch_denoiser") {
 
     TEST_CASE("a run uploads its latents once, downloads them once and gives the frames of calls on views") {
         auto const maps = testing::random_scene(33, 5, {16, 32}, 3);
-        render_settings<float> settings;
+        render_settings<float> settings = render_settings<float>::plain();
         settings.steps = 3;
         settings.keyframes.count = 2;
         settings.frames_per_call = 2;

@@ -121,7 +121,7 @@ TEST_SUITE("adapters/torch_latents") {
     TEST_CASE("a run on tensors gives the latents of the run in host memory, by one upload of them and one download") {
         auto const maps = testing::random_scene(33, 5, {32, 32}, 3);
         for (auto const sampler : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
-            render_settings<float> settings;
+            render_settings<float> settings = render_settings<float>::plain();
             settings.steps = 3;
             settings.sampler = sampler;
             settings.keyframes.count = 2;

@@ -18,7 +18,7 @@ TEST_SUITE("baselines/per_frame") {
         "[GR sec. 4: Per-Frame] a frame of the baseline equals the frame sampled without any library in between") {
         auto const maps = testing::random_scene(1, 4, {16, 16}, 2);
         testing::analytic_denoiser<double> const phi{.grid = {8, 8}, .attention = 0.5};
-        render_settings<double> settings;
+        render_settings<double> settings = render_settings<double>::plain();
         settings.steps = 5;
         auto const [all, report, is_cancelled] = render(phi, to_uv_view(maps), {.settings = per_frame(settings)});
 
@@ -44,7 +44,7 @@ TEST_SUITE("baselines/per_frame") {
         CHECK(report.skipped_frames.empty());
     }
     TEST_CASE("noise is independent unless asked otherwise and the rest of the settings stays") {
-        render_settings<float> settings;
+        render_settings<float> settings = render_settings<float>::plain();
         settings.steps = 7;
         settings.noise.seed = 9;
         auto const baseline = per_frame(settings);

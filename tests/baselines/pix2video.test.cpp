@@ -144,7 +144,7 @@ TEST_SUITE("baselines/pix2video") {
     TEST_CASE_TEMPLATE("it keeps the laws of sequence methods with every sampler", Real, float, double) {
         auto const maps = random_scene(33, 5, {32, 32}, 3);
         layered_denoiser<Real> const phi;
-        render_settings<Real> settings;
+        render_settings<Real> settings = render_settings<Real>::plain();
         settings.steps = 3;
         for (auto const method : {sampler_kind::euler, sampler_kind::heun, sampler_kind::dpmpp_2m}) {
             settings.sampler = method;

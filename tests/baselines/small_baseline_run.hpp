@@ -22,7 +22,7 @@ namespace genrender::testing {
 
 /// Three steps with two keyframes.
 inline render_settings<double> few_steps() {
-    render_settings<double> settings;
+    render_settings<double> settings = render_settings<double>::plain();
     settings.steps = 3;
     settings.keyframes.count = 2;
     return settings;
@@ -36,7 +36,7 @@ struct small_baseline_run {
     std::size_t frames;
     uv_maps maps;
     layered_denoiser<Real> phi;
-    render_settings<Real> settings;
+    render_settings<Real> settings = render_settings<Real>::plain();
     std::vector<Real> sigmas{8, 3, 1, 0};
     tensor<std::uint8_t, 3> background;
     correspondence_set<texel_grid> grids;

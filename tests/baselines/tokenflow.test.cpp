@@ -290,7 +290,7 @@ TEST_SUITE("baselines/tokenflow") {
         counting_network const phi{&network, &runs};
         static_assert(residual_lender<counting_network>);
         auto const run = [&](bool reuses) {
-            render_settings<float> settings;
+            render_settings<float> settings = render_settings<float>::plain();
             settings.steps = 3;
             settings.keyframes.count = 2;
             settings.reuses_keyframes = reuses;
@@ -306,7 +306,7 @@ TEST_SUITE("baselines/tokenflow") {
     TEST_CASE_TEMPLATE("it keeps the laws of sequence methods with every sampler", Real, float, double) {
         auto const maps = random_scene(33, 5, {32, 32}, 3);
         layered_denoiser<Real> const phi;
-        render_settings<Real> settings;
+        render_settings<Real> settings = render_settings<Real>::plain();
         settings.steps = 3;
         settings.keyframes.count = 2;
         settings.window_end = Real(0.7);

@@ -27,7 +27,7 @@ TEST_SUITE("c/engine_denoiser") {
     namespace {
 
     render_settings<float> few_c_steps() {
-        render_settings<float> settings;
+        render_settings<float> settings = render_settings<float>::plain();
         settings.steps = 3;
         settings.sigma_max = 10;
         settings.keyframes.count = 2;

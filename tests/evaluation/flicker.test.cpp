@@ -31,6 +31,26 @@ TEST_SUITE("evaluation/flicker") {
         CHECK(*background_flicker(images.view(), objects) == doctest::Approx(std::sqrt((9 + 16 + 16) / 4.0)));
     }
 
+    TEST_CASE("with a margin what is near an object in either frame is left out, along rows, columns and diagonals") {
+        auto const maps = drawn_maps({"a.....", "a....."});
+        pixel_objects const row(to_uv_view(maps), {1, 6});
+        stack<double, 4> images({2, 1, 1, 6});
+        images(1, 0, 0, 2) = 5;
+        images(1, 0, 0, 3) = 1;
+        CHECK(*background_flicker(images.view(), row) == doctest::Approx(std::sqrt((25 + 1) / 5.0)));
+        CHECK(*background_flicker(images.view(), row, 2) == doctest::Approx(std::sqrt(1 / 3.0)));
+        CHECK(*background_flicker(images.view(), row, 4) == 0.0);
+        CHECK_FALSE(background_flicker(images.view(), row, 5).has_value());
+        // An object in the middle of the first frame leaves the rim of five rows and columns with a margin of one.
+        auto square = uv_maps(2, {5, 5});
+        square.coverage(0, 2, 2) = 1;
+        pixel_objects const around(to_uv_view(square), {5, 5});
+        stack<double, 4> framed({2, 1, 5, 5});
+        framed(1, 0, 1, 1) = 9; // touches the corner of the object's pixel
+        framed(1, 0, 0, 4) = 2;
+        CHECK(*background_flicker(framed.view(), around, 1) == doctest::Approx(std::sqrt(4 / 16.0)));
+    }
+
     TEST_CASE("[GR sec. 3.4] independent noise flickers by the deviation of two") {
         auto const maps = drawn_maps({"........", "........", "........"});
         pixel_objects const objects(to_uv_view(maps), {1, 8});

@@ -71,7 +71,7 @@ struct static_denoiser {
 };
 
 render_settings<float> three_steps() {
-    render_settings<float> settings;
+    render_settings<float> settings = render_settings<float>::plain();
     settings.steps = 3;
     settings.keyframes.count = 2;
     return settings;

@@ -24,7 +24,7 @@ using namespace genrender;
 namespace {
 
 render_settings<double> four_steps() {
-    render_settings<double> settings;
+    render_settings<double> settings = render_settings<double>::plain();
     settings.steps = 4;
     settings.keyframes.count = 2;
     return settings;
@@ -36,7 +36,7 @@ TEST_SUITE("pipeline/generative_rendering") {
     TEST_CASE_TEMPLATE("[GR alg. 1] it keeps the laws of sequence methods with every sampler", Real, float, double) {
         auto const maps = testing::random_scene(33, 5, {32, 32}, 3);
         testing::analytic_denoiser<Real> const phi{.grid = {8, 8}, .attention = Real(0.5), .guidance_branches = 2};
-        render_settings<Real> settings;
+        render_settings<Real> settings = render_settings<Real>::plain();
         settings.steps = 3;
         settings.keyframes.count = 2;
         settings.window_begin = Real(0.3);
@@ -111,7 +111,7 @@ TEST_SUITE("pipeline/generative_rendering") {
         auto const maps = testing::random_scene(33, 5, {32, 32}, 3);
         testing::layered_denoiser<float> const phi;
         auto const run = [&](feature_storage storage) {
-            render_settings<float> settings;
+            render_settings<float> settings = render_settings<float>::plain();
             settings.steps = 3;
             settings.keyframes.count = 2;
             settings.keyframe_storage = storage;

@@ -21,7 +21,7 @@ using testing::wide_denoiser;
 namespace {
 
 render_settings<float> two_steps() {
-    render_settings<float> settings;
+    render_settings<float> settings = render_settings<float>::plain();
     settings.steps = 2;
     settings.keyframes.count = 3;
     return settings;

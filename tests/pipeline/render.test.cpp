@@ -33,7 +33,7 @@ TEST_SUITE("pipeline/render") {
     }
 
     render_settings<double> few_steps() {
-        render_settings<double> settings;
+        render_settings<double> settings = render_settings<double>::plain();
         settings.steps = 4;
         settings.keyframes.count = 3;
         return settings;
@@ -56,7 +56,7 @@ TEST_SUITE("pipeline/render") {
 
     TEST_CASE_TEMPLATE("[GR alg. 1] with a denoiser of known answer every sampler reaches it", Real, float, double) {
         testing::analytic_denoiser<Real> const phi{.grid = {8, 8}}; // no attention: the exact posterior
-        render_settings<Real> settings;
+        render_settings<Real> settings = render_settings<Real>::plain();
         settings.normalization.enabled = false;
         settings.keyframes.count = 2;
         settings.steps = 60;
@@ -91,6 +91,31 @@ TEST_SUITE("pipeline/render") {
         settings.keyframes.seed = 0;
         settings.noise.seed = 1;
         CHECK(difference(one, run(phi, settings)) > 1e-3);
+    }
+    TEST_CASE("with the consensus of vivid frames are the same on any number of threads, and others than without") {
+        auto const phi = with_attention();
+        auto settings = few_steps();
+        auto const without = run(phi, settings, 1);
+        settings.consensus.enabled = true;
+        auto const one = run(phi, settings, 1);
+        CHECK(difference(one, run(phi, settings, 2)) == 0);
+        CHECK(difference(one, run(phi, settings, 5)) == 0);
+        CHECK(difference(one, without) > 1e-3);
+        settings.consensus.agrees_on_background = false;
+        CHECK(difference(one, run(phi, settings)) > 0);
+    }
+    TEST_CASE("[GR eq. 6] no alpha at the latents' grid is no post-attention there") {
+        auto const phi = with_attention();
+        auto settings = few_steps();
+        auto const everywhere = run(phi, settings);
+        settings.latents_grid_alpha = 0;
+        auto const coarse = run(phi, settings);
+        settings.latents_grid_alpha = 1;
+        settings.alpha = [grid = phi.latent_grid()](std::size_t, attention_site const& site) {
+            return site.grid == grid ? 0.0 : paper_alpha;
+        };
+        CHECK(difference(coarse, run(phi, settings)) == 0);
+        CHECK(difference(coarse, everywhere) > 0);
     }
     TEST_CASE("each switch changes what it should and nothing else") {
         auto const phi = with_attention();
@@ -180,8 +205,16 @@ TEST_SUITE("pipeline/render") {
         CHECK(difference(full, none) > 1e-3);
         CHECK(difference(full, with([](auto&) {}, 2)) == 0);
         CHECK(difference(full, with([](auto&) {}, 5)) == 0);
-        CHECK(difference(none, with([](auto& c) { c.window_end = 0; })) == 0);
-        CHECK(difference(none, with([](auto& c) { c.strength = [](std::size_t) { return 0.0; }; })) == 0);
+        auto const on_surfaces = [&](auto&& change) {
+            return with([&](auto& c) {
+                c.agrees_on_background = false;
+                change(c);
+            });
+        };
+        CHECK(difference(none, on_surfaces([](auto& c) { c.window_end = 0; })) == 0);
+        CHECK(difference(none, on_surfaces([](auto& c) { c.strength = [](std::size_t) { return 0.0; }; })) == 0);
+        CHECK(difference(none, with([](auto& c) { c.window_end = 0; })) > 0); // the background
+        CHECK(difference(full, with([](auto& c) { c.background_distance = 9; })) > 0);
         CHECK(difference(full, with([](auto& c) { c.window_end = 1; })) > 1e-6);
         CHECK(difference(full, with([](auto& c) { c.window_begin = 0.25; })) > 1e-6);
         CHECK(difference(full, with([](auto& c) { c.strength = [](std::size_t) { return 0.5; }; })) > 1e-6);
@@ -439,6 +472,8 @@ TEST_SUITE("pipeline/render") {
                 "render: quality.threshold is -1.000000, expected a finite number, 0 or more");
         refuses([](auto& s) { s.layers = nullptr; }, "render: settings.layers is empty, expected a function");
         refuses([](auto& s) { s.alpha = nullptr; }, "render: settings.alpha is empty, expected a function");
+        refuses([](auto& s) { s.latents_grid_alpha = 1.5; },
+                "render: settings.latents_grid_alpha is 1.500000, expected a share in [0, 1]");
         refuses([](auto& s) { s.alpha = [](std::size_t, attention_site const&) { return std::nan(""); }; },
                 "render: settings.alpha is nan, expected finite numbers");
         auto broken = scene();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 4] The defaults are the paper's.
+// [GR sec. 4] The presets: the defaults, Alg. 1 alone, and the paper to the letter.
 #include <genrender/pipeline/render_settings.hpp>
 
 #include <doctest/doctest.h>
+
+#include <cstddef>
 
 using namespace genrender;
 
@@ -19,8 +21,10 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(settings.first_fill_share == Real(0.5));
         CHECK(settings.injection.keeps_own_copy);
         CHECK(!settings.normalization.on_noisy_latents);
-        CHECK(!settings.consensus.enabled);
-        CHECK(settings.normalization.statistics == adain_statistics::mean); // the one default that is not the paper's
+        // What is not the paper's.
+        CHECK(settings.normalization.statistics == adain_statistics::mean);
+        CHECK(settings.consensus.enabled);
+        CHECK(settings.latents_grid_alpha == 0);
     }
     TEST_CASE("a window holds its first step and not its last") {
         CHECK(is_in_window(0, 4, 0.0, 1.0));
@@ -56,14 +60,39 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(paper.injection.length_correction == 0);
         CHECK(paper.injection.variance.target == variance_target::none);
         CHECK(paper.quality.at(3, 10).are_plain());
+        CHECK(!paper.consensus.enabled);
+        CHECK(paper.latents_grid_alpha == 1);
         CHECK(paper.sampler == sampler_kind::euler);
     }
-    TEST_CASE("vivid settings keep eq. 6, the temperature and the variance of sources") {
+    TEST_CASE("vivid settings are the defaults, keep eq. 6 and ask no more of an engine than the paper does") {
         auto const vivid = render_settings<double>::vivid();
         CHECK(vivid.injection.post_attention);
-        CHECK(vivid.injection.length_correction == 1);
-        CHECK(vivid.injection.variance.target == variance_target::sources);
+        CHECK(vivid.injection.length_correction == 0);
+        CHECK(vivid.injection.variance.target == variance_target::none);
         CHECK(vivid.normalization.statistics == adain_statistics::mean);
         CHECK(vivid.correspondence.kind == correspondence_kind::footprint);
+        CHECK(vivid.consensus.enabled);
+        CHECK(vivid.latents_grid_alpha == 0);
+    }
+    TEST_CASE("plain settings are vivid ones without what is not the paper's") {
+        auto const plain = render_settings<double>::plain();
+        CHECK(!plain.consensus.enabled);
+        CHECK(plain.latents_grid_alpha == 1);
+        CHECK(plain.correspondence.kind == correspondence_kind::footprint);
+        CHECK(plain.normalization.statistics == adain_statistics::mean);
+    }
+    TEST_CASE("alpha is shared out at the latents' own grid alone") {
+        auto settings = render_settings<double>::plain();
+        settings.alpha = [](std::size_t step, attention_site const&) { return 0.1 * static_cast<double>(step); };
+        attention_site fine;
+        fine.grid = {8, 6};
+        attention_site coarse;
+        coarse.grid = {4, 3};
+        for (auto const share : {0.0, 0.25, 1.0}) {
+            settings.latents_grid_alpha = share;
+            CHECK(alpha_at(settings, 5, fine, {8, 6}) == doctest::Approx(0.5 * share));
+            CHECK(alpha_at(settings, 5, coarse, {8, 6}) == doctest::Approx(0.5));
+            CHECK(alpha_at(settings, 5, fine, {16, 12}) == doctest::Approx(0.5));
+        }
     }
 }

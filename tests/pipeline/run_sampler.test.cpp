@@ -37,7 +37,7 @@ TEST_SUITE("pipeline/run_sampler") {
     }
 
     render_settings<float> few_steps() {
-        render_settings<float> settings;
+        render_settings<float> settings = render_settings<float>::plain();
         settings.steps = 3;
         settings.keyframes.count = 3;
         settings.frames_per_call = 4;

@@ -28,7 +28,7 @@ TEST_SUITE("pipeline/sequence_denoiser") {
         static constexpr std::size_t T = 12;
         uv_maps maps = testing::random_scene(21, 6, {32, 32}, objects);
         testing::analytic_denoiser<Real> phi{.grid = {8, 8}, .attention = Real(0.6), .guidance_branches = 2};
-        render_settings<Real> settings;
+        render_settings<Real> settings = render_settings<Real>::plain();
         std::vector<Real> sigmas{8, 3, 1, 0};
         tensor<std::uint8_t, 3> background = background_mask(to_uv_view(maps), phi.grid);
         correspondence_set<texel_grid> grids;

@@ -60,7 +60,7 @@ TEST_SUITE("pipeline/sequence_method") {
     TEST_CASE("a user's own method runs in the same machinery and keeps the laws") {
         auto const maps = testing::random_scene(33, 5, {32, 32}, 2);
         testing::analytic_denoiser<double> const phi{.grid = {8, 8}, .attention = 0.5};
-        render_settings<double> settings;
+        render_settings<double> settings = render_settings<double>::plain();
         settings.steps = 3;
         auto const laws = testing::check_sequence_method_laws(middle_first{}, phi, to_uv_view(maps), settings);
         CHECK(laws.text() == "");

@@ -29,7 +29,7 @@ namespace {
 /// Five frames of 1 x 4 tokens on a strip that moves one token a frame.
 struct strip_run {
     analytic_denoiser<double> phi{.grid = {1, 4}, .attention = 1, .guidance_branches = 2};
-    render_settings<double> settings;
+    render_settings<double> settings = render_settings<double>::plain();
     correspondence_set<shifted_strip> maps;
     threaded_loop loop{2};
     std::vector<progress> told;

@@ -146,7 +146,7 @@ TEST_SUITE("pipeline/shapes_of_run") {
     }
 
     render_settings<double> few_steps() {
-        render_settings<double> settings;
+        render_settings<double> settings = render_settings<double>::plain();
         settings.steps = 3;
         settings.keyframes.count = 3;
         settings.frames_per_call = 2;

@@ -109,7 +109,8 @@ refuses("texels of rest positions" 2 "--canonical: position has no texels" ${sce
 refuses("quality of texels" 2 "--average: quality is not known" ${scene} --prompt dots ${out} --average quality
     --correspondence texels)
 refuses("a window without a consensus" 2 "--consensus-window: is of --consensus" ${scene} --prompt dots ${out}
-    --consensus-window 0 0.5)
+    --preset plain --consensus-window 0 0.5)
+refuses("a share of alpha above 1" 2 "--latents-grid-alpha" ${scene} --prompt dots ${out} --latents-grid-alpha 2)
 refuses("sources of no consensus" 2 "--consensus-sources: is of --consensus" ${scene} --prompt dots ${out}
     --no-consensus --consensus-sources 4)
 refuses("a consensus and none" 2 "--no-consensus" ${scene} --prompt dots ${out} --consensus --no-consensus)

@@ -67,6 +67,7 @@ def rendered_by_program(folder, name, options):
     begin = time.perf_counter()
     subprocess.run([PROGRAM, "--maps", FOLDER / "maps", "--pipeline", folder, "--prompt", PROMPT, "--size", str(SIZE), "--steps",
                     "4", "--seed", str(SEED), "--out", out, "--latents", "--quiet",
+                    *([] if "--method" in options else ["--preset", "plain"]),
                     *([] if "--guidance" in options else ["--guidance", "5"]), *options], check=True, stdout=subprocess.DEVNULL)
     return np.load(out / "latents.npy"), time.perf_counter() - begin, out
 

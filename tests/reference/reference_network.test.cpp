@@ -368,7 +368,7 @@ TEST_SUITE("reference/reference_network") {
         CHECK_FALSE(stoppable_denoiser<bare_network<reference_network<float>>>);
         auto const maps = random_scene(33, 3, {16, 24}, 2);
         auto const run = [&](auto const& phi, auto&& change) {
-            render_settings<float> settings;
+            render_settings<float> settings = render_settings<float>::plain();
             settings.steps = 3;
             settings.keyframes.count = 2;
             change(settings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [GR sec. 3, 4] Everything about a run that is neither the scene nor the network, with the paper's values as defaults.
+// [GR sec. 3, 4] Everything about a run that is neither the scene nor the network, and its presets.
 #pragma once
 
 #include <genrender/core/begin_header.inl>
@@ -43,16 +43,16 @@ struct render_settings {
     noise_settings noise;                   ///< sec. 3.3
     keyframe_settings keyframes;            ///< alg. 1: KF
     correspondence_settings correspondence; ///< sec. 3.2
-    consensus_settings<Real> consensus;     ///< of the clean estimates; not the paper's
+    consensus_settings<Real> consensus{.enabled = true}; ///< of the clean estimates; not the paper's
     adain_settings<Real> normalization;     ///< sec. 3.4
 
     /// Sites and branches that take part in the injection. Like alpha it may be called from several threads at once.
     std::function<bool(attention_site const&, std::uint32_t branch)> layers = is_in_decoder;
     /// alpha of eq. 6, by step and site.
     alpha_schedule<Real> alpha = constant_alpha(Real(paper_alpha));
-    /// What alpha is multiplied by at sites of the latents' own grid, in [0, 1]: 0 where a consensus makes that grid agree
-    /// and eq. 6 only makes it paler.
-    Real latents_grid_alpha = 1;
+    /// What alpha is multiplied by at sites of the latents' own grid, in [0, 1]; the paper's is 1. There a consensus makes
+    /// frames agree, and eq. 6 besides makes them paler.
+    Real latents_grid_alpha = 0;
     injection_settings injection;      ///< eq. 3, 5 and 6
     Real first_fill_share = Real(0.5); ///< of the inpainted texture in the unified one
     /// How the average texture weighs keyframes; plain is the paper's.
@@ -74,29 +74,26 @@ struct render_settings {
     /// among more threads. 0 leaves it to the loop; 1 is for an engine with one graph, context or device.
     std::size_t calls_at_once = 0;
 
-    /// The paper to the letter, where it says what to do and the defaults do something else: texels and noise read from
-    /// texels, T of both matched to the maps, average of keyframes alike, latent normalisation of mean and deviation, eq. 6
-    /// with its alpha, and attention and variance as they come.
-    static render_settings paper() {
+    /// Consistent and vivid, what measured best on development scenes (docs/presets.md): the defaults.
+    static render_settings vivid() { return {}; }
+
+    /// Alg. 1 alone, with the defaults' readings of the paper and nothing besides: no consensus, and eq. 6 at every site.
+    static render_settings plain() {
         render_settings settings;
+        settings.consensus.enabled = false;
+        settings.latents_grid_alpha = 1;
+        return settings;
+    }
+
+    /// The paper to the letter, where it says what to do and the defaults do something else: Alg. 1 alone, texels and
+    /// noise read from texels, T of both matched to the maps, average of keyframes alike, latent normalisation of mean and
+    /// deviation.
+    static render_settings paper() {
+        auto settings = plain();
         settings.correspondence.kind = correspondence_kind::texel_grid;
         settings.average = texel_average::plain;
         settings.noise.reading = noise_reading::nearest_texel;
         settings.normalization.statistics = adain_statistics::mean_and_deviation;
-        settings.alpha = constant_alpha(Real(paper_alpha));
-        settings.injection = {};
-        settings.quality = {};
-        settings.first_fill_share = Real(0.5);
-        return settings;
-    }
-
-    /// Consistent and vivid, what measured best: eq. 6 is kept and gives back the variance that its sources have, logits
-    /// have the length-corrected temperature, and clean estimates agree along the surfaces.
-    static render_settings vivid() {
-        render_settings settings;
-        settings.injection.length_correction = 1;
-        settings.injection.variance.target = variance_target::sources;
-        settings.consensus.enabled = true;
         return settings;
     }
 
