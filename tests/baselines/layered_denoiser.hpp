@@ -68,12 +68,14 @@ struct layered_denoiser {
         auto const scale = 1 / std::sqrt(1 + sigma * sigma);
         for (std::uint32_t branch = 0; branch < branches(); ++branch) {
             auto const& L = lift[branch];
-            auto const f = features_type::allocate({frames.size(), grid.size(), channels});
+            auto const features = features_type::allocate({frames.size(), grid.size(), channels});
+            auto const f = features.view();
             each(f, [&](std::size_t i, std::size_t t, std::size_t c) {
                 auto const knows = std::sin(static_cast<Real>(frames[i].value * (c + 1)));
-                f.view()(i, t, c) = conditioning * knows;
+                auto& out = f(i, t, c);
+                out = conditioning * knows;
                 for (std::size_t k = 0; k < 3; ++k) {
-                    f.view()(i, t, c) += L(c, k) * scale * z(i, k, t / grid.width, t % grid.width);
+                    out += L(c, k) * scale * z(i, k, t / grid.width, t % grid.width);
                 }
             });
             for (std::uint32_t site = 0; site < modules.size(); ++site) {
@@ -83,19 +85,22 @@ struct layered_denoiser {
                     return t / grid.width / cell * site_grid.width + t % grid.width / cell;
                 };
                 auto const pooled = features_type::allocate({frames.size(), site_grid.size(), channels});
+                auto const sums = pooled.view();
                 each(f, [&](std::size_t i, std::size_t t, std::size_t c) {
-                    pooled.view()(i, token_of(t), c) += f.view()(i, t, c) / static_cast<Real>(cell * cell);
+                    sums(i, token_of(t), c) += f(i, t, c) / static_cast<Real>(cell * cell);
                 });
-                auto const F = attend({{site}, branch}, pooled);
+                auto const attended = attend({{site}, branch}, pooled);
+                auto const F = attended.view();
                 each(f, [&](std::size_t i, std::size_t t, std::size_t c) {
-                    f.view()(i, t, c) = std::tanh(f.view()(i, t, c) + F.view()(i, token_of(t), c));
+                    auto& own = f(i, t, c);
+                    own = std::tanh(own + F(i, token_of(t), c));
                 });
             }
             for (std::size_t i = 0; i < frames.size(); ++i) {
                 for (std::size_t t = 0; t < grid.size(); ++t) {
                     for (std::size_t k = 0; k < 3; ++k) {
                         auto& out = x0(i, k, t / grid.width, t % grid.width);
-                        auto const own = f.view()(i, t, k) + f.view()(i, t, k + 3);
+                        auto const own = f(i, t, k) + f(i, t, k + 3);
                         out = branch == 0 ? own : 2 * own - out; // a guidance scale of 2
                     }
                 }
@@ -105,9 +110,9 @@ struct layered_denoiser {
 
 private:
     template <class Visit>
-    static void each(features_type const& f, Visit const& visit) {
-        for (std::size_t i = 0; i < f.extents()[0]; ++i) {
-            for (std::size_t t = 0; t < f.extents()[1]; ++t) {
+    static void each(strided_view<Real, 3> const& f, Visit const& visit) {
+        for (std::size_t i = 0; i < f.extent(0); ++i) {
+            for (std::size_t t = 0; t < f.extent(1); ++t) {
                 for (std::size_t c = 0; c < channels; ++c) {
                     visit(i, t, c);
                 }
@@ -119,9 +124,10 @@ private:
 /// Writes rows into frame i of F.
 template <class Real>
 void put_rows(host_features<Real> const& F, std::size_t i, token_rows const& rows) {
+    auto const view = F.view();
     for (std::size_t t = 0; t < rows.size(); ++t) {
         for (std::size_t c = 0; c < rows[t].size(); ++c) {
-            F.view()(i, t, c) = static_cast<Real>(rows[t][c]);
+            view(i, t, c) = static_cast<Real>(rows[t][c]);
         }
     }
 }

@@ -23,11 +23,12 @@ using token_rows = std::vector<std::vector<double>>;
 template <class Real>
 token_rows joined_rows(host_features<Real> const& f, std::vector<std::size_t> const& frames) {
     token_rows rows;
+    auto const view = f.view();
     for (auto const i : frames) {
         for (std::size_t t = 0; t < f.extents()[1]; ++t) {
             auto& row = rows.emplace_back();
             for (std::size_t c = 0; c < f.extents()[2]; ++c) {
-                row.push_back(static_cast<double>(f.view()(i, t, c)));
+                row.push_back(static_cast<double>(view(i, t, c)));
             }
         }
     }
@@ -40,10 +41,12 @@ token_rows dense_product(stack<Real, 2> const& W, token_rows const& f) {
     for (auto const& token : f) {
         auto& row = out.emplace_back();
         for (std::size_t r = 0; r < W.extent(0); ++r) {
-            row.push_back(0);
-            for (std::size_t c = 0; c < W.extent(1); ++c) {
-                row.back() += static_cast<double>(W(r, c)) * token[c];
+            auto const* w = &W(r, 0);
+            double sum = 0;
+            for (auto const value : token) {
+                sum += static_cast<double>(*w++) * value;
             }
+            row.push_back(sum);
         }
     }
     return out;
@@ -64,15 +67,20 @@ token_rows dense_self_attention(matrix_module<Real> const& module, token_rows co
             double sum = 0;
             for (auto const& k : K) {
                 double logit = 0;
-                for (auto c = head * d; c < (head + 1) * d; ++c) {
-                    logit += Q[t][c] * k[c];
+                auto const* const q_c = Q[t].data() + head * d;
+                auto const* const k_c = k.data() + head * d;
+                for (std::size_t c = 0; c < d; ++c) {
+                    logit += q_c[c] * k_c[c];
                 }
                 exponentials.push_back(std::exp(logit / std::sqrt(static_cast<double>(d))));
                 sum += exponentials.back();
             }
             for (std::size_t s = 0; s < V.size(); ++s) {
-                for (auto c = head * d; c < (head + 1) * d; ++c) {
-                    F[t][c] += exponentials[s] / sum * V[s][c];
+                auto const weight = exponentials[s] / sum;
+                auto const* const v_c = V[s].data() + head * d;
+                auto* const F_c = F[t].data() + head * d;
+                for (std::size_t c = 0; c < d; ++c) {
+                    F_c[c] += weight * v_c[c];
                 }
             }
         }
@@ -103,9 +111,10 @@ token_rows dense_mix(token_rows F_hat, token_rows const& F_KF, sparse_rows<Real>
 template <class Real>
 double greatest_difference(host_features<Real> const& F, std::size_t i, token_rows const& rows) {
     double greatest = 0;
+    auto const view = F.view();
     for (std::size_t t = 0; t < rows.size(); ++t) {
         for (std::size_t c = 0; c < rows[t].size(); ++c) {
-            greatest = std::max(greatest, std::abs(static_cast<double>(F.view()(i, t, c)) - rows[t][c]));
+            greatest = std::max(greatest, std::abs(static_cast<double>(view(i, t, c)) - rows[t][c]));
         }
     }
     return greatest;

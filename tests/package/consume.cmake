@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Builds and runs the toy programs of COMPONENTS in BUILD in one WAY: find_package, add_subdirectory or pkg_config; without
-# the packages of other components. WITH_INSTANCES: and one that compiles the instances apart. Run with cmake -P.
+# the packages of other components, and with FLAGS, those of the build that asks. WITH_INSTANCES: and one that compiles the
+# instances apart. Run with cmake -P.
 cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/cmake/components.cmake)
 file(REMOVE_RECURSE ${BUILD})
@@ -13,7 +14,7 @@ if(WAY STREQUAL "pkg_config")
         string(REPLACE "genrender-core" "genrender" module genrender-${component})
         execute_process(COMMAND pkg-config --cflags --libs ${module}
             OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
-        separate_arguments(flags UNIX_COMMAND "${flags}")
+        separate_arguments(flags UNIX_COMMAND "${FLAGS} ${flags}")
         execute_process(COMMAND ${COMPILER} -std=c++20 ${CMAKE_CURRENT_LIST_DIR}/toy/${component}.cpp ${flags}
             -o ${BUILD}/toy_${component} COMMAND_ERROR_IS_FATAL ANY)
     endforeach()
@@ -31,8 +32,9 @@ else()
         endforeach()
     endforeach()
     execute_process(COMMAND ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/toy -B ${BUILD} -G ${GENERATOR}
-        -D CMAKE_CXX_COMPILER=${COMPILER} -D "COMPONENTS=${COMPONENTS}" ${where} COMMAND_ERROR_IS_FATAL ANY)
-    execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD} COMMAND_ERROR_IS_FATAL ANY)
+        -D CMAKE_CXX_COMPILER=${COMPILER} -D "CMAKE_CXX_FLAGS=${FLAGS}" -D "COMPONENTS=${COMPONENTS}" ${where}
+        COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD} --parallel 2 COMMAND_ERROR_IS_FATAL ANY)
     # A library used as a sub-project brings no tests and installs nothing of its own.
     execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${BUILD}/prefix COMMAND_ERROR_IS_FATAL ANY)
     if(EXISTS ${BUILD}/prefix/include)

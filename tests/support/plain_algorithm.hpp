@@ -25,16 +25,19 @@ std::vector<std::vector<Real>> dense_attention(std::vector<std::vector<Real>> co
         Real sum = 0;
         for (auto const& k : sources) {
             Real logit = 0;
-            for (std::size_t c = 0; c < q.size(); ++c) {
-                logit += q[c] * k[c];
+            auto const* k_c = k.data();
+            for (auto const q_c : q) {
+                logit += q_c * *k_c++;
             }
             exponentials.push_back(std::exp(logit / std::sqrt(static_cast<Real>(q.size()))));
             sum += exponentials.back();
         }
         std::vector<Real> out(q.size());
         for (std::size_t k = 0; k < sources.size(); ++k) {
-            for (std::size_t c = 0; c < q.size(); ++c) {
-                out[c] += exponentials[k] / sum * sources[k][c];
+            auto const weight = exponentials[k] / sum;
+            auto const* value = sources[k].data();
+            for (auto& out_c : out) {
+                out_c += weight * *value++;
             }
         }
         F.push_back(out);

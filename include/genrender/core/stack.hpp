@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -81,12 +82,12 @@ public:
     /// Element at one index an axis, each below the axis' extent.
     template <class... Index>
     T& operator()(Index... index) {
-        return view()(index...);
+        return data()[offset_of(index...)];
     }
     /// Element at one index an axis, each below the axis' extent.
     template <class... Index>
     T const& operator()(Index... index) const {
-        return view()(index...);
+        return data()[offset_of(index...)];
     }
 
     /// View of all elements, found where views are asked for.
@@ -99,6 +100,18 @@ private:
     struct release {
         void operator()(T* elements) const { ::operator delete (elements, std::align_val_t{line_bytes}); }
     };
+
+    /// Elements before that at one index an axis.
+    template <class... Index>
+    std::size_t offset_of(Index... index) const {
+        static_assert(sizeof...(Index) == Rank, "stack: an element is named by one index an axis");
+        auto const* extent = extents_.data();
+        std::size_t offset = 0;
+        ((assert(static_cast<std::size_t>(index) < *extent && "stack: index beyond its axis"),
+          offset = offset * *extent + static_cast<std::size_t>(index), ++extent),
+         ...);
+        return offset;
+    }
 
     stack(std::array<std::size_t, Rank> const& extents, not_set) : extents_(extents) {
         if (std::find(extents.begin(), extents.end(), std::size_t{0}) != extents.end()) {

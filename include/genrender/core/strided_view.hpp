@@ -59,10 +59,12 @@ public:
 
     /// Views a contiguous row-major block.
     constexpr strided_view(T* data, extents_type extents) : data_(data), extents_(extents) {
+        auto const* const extent = extents_.data();
+        auto* const strides = strides_.data();
         std::ptrdiff_t stride = 1;
         for (std::size_t axis = Rank; axis-- > 0;) {
-            strides_[axis] = stride;
-            stride *= static_cast<std::ptrdiff_t>(extents[axis]);
+            strides[axis] = stride;
+            stride *= static_cast<std::ptrdiff_t>(extent[axis]);
         }
     }
 
@@ -86,7 +88,10 @@ public:
     /// Elements of memory from one index to the next, of every axis.
     constexpr strides_type const& strides() const { return strides_; }
     /// Extent of one axis, counted from 0.
-    constexpr std::size_t extent(std::size_t axis) const { return extents_[axis]; }
+    constexpr std::size_t extent(std::size_t axis) const {
+        assert(axis < Rank && "strided_view: no such axis");
+        return extents_.data()[axis];
+    }
     /// Elements of memory from one index to the next of one axis.
     constexpr std::ptrdiff_t stride(std::size_t axis) const { return strides_[axis]; }
 
@@ -103,10 +108,12 @@ public:
     template <class... Index>
         requires(sizeof...(Index) == Rank)
     constexpr T& operator()(Index... index) const {
-        std::size_t axis = 0;
+        // Pointers, because std::array's operator[] is a call where nothing is optimised: a third of a debug build's time.
+        [[maybe_unused]] auto const* extent = extents_.data();
+        auto const* stride = strides_.data();
         std::ptrdiff_t offset = 0;
-        ((assert(static_cast<std::size_t>(index) < extents_[axis] && "strided_view: index beyond its axis"),
-          offset += static_cast<std::ptrdiff_t>(index) * strides_[axis], ++axis),
+        ((assert(static_cast<std::size_t>(index) < *extent && "strided_view: index beyond its axis"),
+          offset += static_cast<std::ptrdiff_t>(index) * *stride, ++extent, ++stride),
          ...);
         return data_[offset];
     }
@@ -116,11 +123,15 @@ public:
         assert(index < extents_[0] && "strided_view: index beyond the first axis");
         std::array<std::size_t, Rank - 1> extents{};
         std::array<std::ptrdiff_t, Rank - 1> strides{};
+        auto const* const extent = extents_.data();
+        auto const* const stride = strides_.data();
+        auto* const extents_left = extents.data();
+        auto* const strides_left = strides.data();
         for (std::size_t axis = 1; axis < Rank; ++axis) {
-            extents[axis - 1] = extents_[axis];
-            strides[axis - 1] = strides_[axis];
+            extents_left[axis - 1] = extent[axis];
+            strides_left[axis - 1] = stride[axis];
         }
-        return {data_ + static_cast<std::ptrdiff_t>(index) * strides_[0], extents, strides};
+        return {data_ + static_cast<std::ptrdiff_t>(index) * *stride, extents, strides};
     }
 
     /// The view of `count` indices of the first axis from `begin` on.

@@ -69,20 +69,12 @@ struct analytic_denoiser {
     template <class Processor>
     void operator()(strided_view<Real, 4> x0, strided_view<Real const, 4> z, Real sigma,
                     std::span<frame_index const> frames, Processor& processor) const {
-        auto const tokens = grid.size();
-        auto posterior = features_type::allocate({frames.size(), tokens, channels});
-        auto const gain = spread * spread / (spread * spread + sigma * sigma);
-        for_each(z, [&](std::size_t i, std::size_t c, std::size_t row, std::size_t column) {
-            posterior.view()(i, row * grid.width + column, c) = mean + gain * (z(i, c, row, column) - mean);
-        });
+        auto const posterior = posterior_of(z, sigma);
         // Branches differ in their features by sign, so that mixing them up would show.
         identity_projections const module;
         std::vector<features_type> F;
         for (std::uint32_t branch = 0; branch < guidance_branches; ++branch) {
-            auto f = features_type::allocate(posterior.extents());
-            for (std::size_t e = 0; e < f.view().size(); ++e) {
-                f.view().data()[e] = (branch == 0 ? Real{1} : Real{-1}) * posterior.view().data()[e];
-            }
+            auto const f = scaled(posterior, sign_of(branch));
             for (std::uint32_t site = 0; site < site_list.size(); ++site) {
                 host_attention_call<Real, identity_projections> call({{site}, branch}, frames, f, module);
                 auto const out = processor(call);
@@ -91,18 +83,51 @@ struct analytic_denoiser {
                 }
             }
         }
+        mix(x0, posterior, F);
+    }
+
+private:
+    static Real sign_of(std::size_t branch) { return branch == 0 ? Real{1} : Real{-1}; }
+
+    /// [frames, tokens, channels] of z.
+    features_type posterior_of(strided_view<Real const, 4> z, Real sigma) const {
+        auto const posterior = features_type::allocate({z.extent(0), grid.size(), channels});
+        auto const view = posterior.view();
+        auto const gain = spread * spread / (spread * spread + sigma * sigma);
+        for_each(z, [&](std::size_t i, std::size_t c, std::size_t row, std::size_t column) {
+            view(i, row * grid.width + column, c) = mean + gain * (z(i, c, row, column) - mean);
+        });
+        return posterior;
+    }
+
+    static features_type scaled(features_type const& posterior, Real sign) {
+        auto const f = features_type::allocate(posterior.extents());
+        auto const* from = posterior.view().data();
+        auto* const to = f.view().data();
+        auto const count = f.view().size();
+        for (std::size_t e = 0; e < count; ++e) {
+            to[e] = sign * from[e];
+        }
+        return f;
+    }
+
+    /// x0 of the posterior and of what the branches' last sites gave.
+    void mix(strided_view<Real, 4> x0, features_type const& posterior, std::vector<features_type> const& F) const {
+        auto const own = posterior.view();
+        std::vector<strided_view<Real, 3>> of_branches;
+        for (auto const& out : F) {
+            of_branches.push_back(out.view());
+        }
         for_each(x0, [&](std::size_t i, std::size_t c, std::size_t row, std::size_t column) {
             auto const t = row * grid.width + column;
             Real mixed = 0;
             for (std::size_t branch = 0; branch < guidance_branches; ++branch) {
-                mixed += (branch == 0 ? Real{1} : Real{-1}) * F[branch].view()(i, t, c) /
-                         static_cast<Real>(guidance_branches);
+                mixed += sign_of(branch) * of_branches[branch](i, t, c) / static_cast<Real>(guidance_branches);
             }
-            x0(i, c, row, column) = (1 - attention) * posterior.view()(i, t, c) + attention * mixed;
+            x0(i, c, row, column) = (1 - attention) * own(i, t, c) + attention * mixed;
         });
     }
 
-private:
     template <class View, class Visit>
     static void for_each(View const& view, Visit const& visit) {
         for (std::size_t i = 0; i < view.extent(0); ++i) {
