@@ -37,7 +37,7 @@ struct engine_case {
     named_tensors controlnet;
     reference::network_conditioning<float> conditioning;
     uv_maps UV;
-    render_settings<float> settings;
+    render_settings<float> settings = render_settings<float>::plain(); ///< what Python's clients have, too
 };
 
 /// A camera that goes around a still life in 8 frames, in pictures of `size` pixels a side, with the prompts as the

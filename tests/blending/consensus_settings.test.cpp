@@ -17,7 +17,6 @@ TEST_SUITE("blending/consensus_settings") {
     template <class Change>
     std::string refusal_of(Change const& change) {
         consensus_settings<double> settings;
-        settings.enabled = true;
         change(settings);
         try {
             require_consensus_settings("render", settings, 5);
@@ -29,9 +28,9 @@ TEST_SUITE("blending/consensus_settings") {
 
     } // namespace
 
-    TEST_CASE_TEMPLATE("by default there is none and the rest is what development scenes chose", Real, float, double) {
+    TEST_CASE_TEMPLATE("defaults are what development scenes chose", Real, float, double) {
         consensus_settings<Real> const settings;
-        CHECK(!settings.enabled);
+        CHECK(settings.enabled);
         CHECK(settings.window_begin == 0);
         CHECK(settings.window_end == Real(0.6));
         CHECK(settings.strength(7) == 1);
@@ -39,6 +38,8 @@ TEST_SUITE("blending/consensus_settings") {
         CHECK(settings.sources.drawing == keyframe_drawing::stratified);
         CHECK(settings.first_fill_share == 0);
         CHECK(settings.average == texel_average::by_quality);
+        CHECK(settings.quality.at(3, 10).are_plain());
+        CHECK(settings.agrees_on_background);
         require_consensus_settings("render", settings, 50);
     }
     TEST_CASE("settings that no run could honour are refused by name") {

@@ -122,6 +122,7 @@ TEST_SUITE("documentation/answers") {
     TEST_CASE("the paper to the letter is settings") {
         auto settings = small_settings();
         // docs:begin literal
+        settings = genrender::render_settings<float>::plain(); // Alg. 1 alone
         settings.normalization.statistics = genrender::adain_statistics::mean_and_deviation;
         settings.correspondence.kind = genrender::correspondence_kind::texel_grid;
         settings.correspondence.texels.T = 1024;
@@ -129,12 +130,14 @@ TEST_SUITE("documentation/answers") {
         settings.noise.reading = genrender::noise_reading::nearest_texel;
         settings.noise.T = 512;
         // docs:end
+        CHECK(!settings.consensus.enabled);
         CHECK(settings.noise.T == 512);
     }
 
     TEST_CASE("latent normalisation as in 0.1 is a setting") {
         auto settings = small_settings();
         // docs:begin as_in_zero_one
+        settings = genrender::render_settings<float>::plain(); // no consensus, and eq. 6 at every site
         settings.normalization.statistics = genrender::adain_statistics::mean_and_deviation;
         // docs:end
         CHECK(settings.normalization.enabled);

@@ -21,8 +21,8 @@ TEST_SUITE("evaluation_program/methods") {
             CHECK((row.preset != nullptr));
             ++rows[row.group];
         }
-        CHECK(rows["method"] == 10);
-        CHECK(rows["ablation"] == 13);
+        CHECK(rows["method"] == 11);
+        CHECK(rows["ablation"] == 15);
         CHECK(painted_row().method == row_method::painted);
     }
 

@@ -16,7 +16,7 @@ namespace genrender::examples {
 /// What a run is given.
 struct graph_case {
     uv_maps UV;
-    render_settings<float> settings;
+    render_settings<float> settings = render_settings<float>::plain(); ///< what Python's clients have, too
 };
 
 /// The latents of an engine, and what its run told.

@@ -17,7 +17,7 @@ namespace genrender {
 /// deviation of what it is the mean of (consensus.hpp), between the method and latent normalisation.
 template <class Real>
 struct consensus_settings {
-    bool enabled = false; ///< whether there is one at all
+    bool enabled = true; ///< whether there is one at all
     /// Steps that have it: those whose share step / steps lies in [window_begin, window_end). Late steps draw detail finer
     /// than a latent cell can agree on.
     Real window_begin = 0;

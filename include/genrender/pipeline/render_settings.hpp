@@ -43,7 +43,7 @@ struct render_settings {
     noise_settings noise;                   ///< sec. 3.3
     keyframe_settings keyframes;            ///< alg. 1: KF
     correspondence_settings correspondence; ///< sec. 3.2
-    consensus_settings<Real> consensus{.enabled = true}; ///< of the clean estimates; not the paper's
+    consensus_settings<Real> consensus;     ///< of the clean estimates; not the paper's
     adain_settings<Real> normalization;     ///< sec. 3.4
 
     /// Sites and branches that take part in the injection. Like alpha it may be called from several threads at once.
