@@ -143,7 +143,7 @@ inline std::vector<compared_row> compared_rows() {
         {"vivid, no consensus of the background", "ablation", generative_rendering, vivid, [](s& x) { x.consensus.agrees_on_background = false; }},
         {"vivid, temperature", "ablation", generative_rendering, vivid, [](s& x) { x.injection.length_correction = 1; }},
         {"vivid, variance kept", "ablation", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::sources; }},
-        {"vivid, no normalisation", "ablation", generative_rendering, vivid, [](s& x) { x.normalization.enabled = false; }},
+        {"vivid, means normalised", "ablation", generative_rendering, vivid, [](s& x) { x.normalization.enabled = true; }},
         {"vivid, fixed noise", "ablation", generative_rendering, vivid, [](s& x) { x.noise.kind = noise_kind::fixed; }},
         {"vivid, plain average", "ablation", generative_rendering, vivid, [](s& x) { x.average = x.consensus.average = texel_average::plain; }},
 
@@ -167,7 +167,7 @@ inline std::vector<compared_row> compared_rows() {
         {"no consensus", "development", generative_rendering, vivid, [](s& x) { x.consensus.enabled = false; }},
         {"no consensus of the background", "development", generative_rendering, vivid, [](s& x) { x.consensus.agrees_on_background = false; }},
         {"consensus in the first 40 %", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 0.4F; }},
-        {"consensus in the first 70 %", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 0.7F; }},
+        {"consensus in the first 60 %", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 0.6F; }},
         {"consensus in all steps", "development", generative_rendering, vivid, [](s& x) { x.consensus.window_end = 1; }},
         {"consensus to the silhouettes", "development", generative_rendering, vivid, [](s& x) { x.consensus.fades_at_silhouettes = false; }},
         {"consensus without variance", "development", generative_rendering, vivid, [](s& x) { x.consensus.most_gain = 1; }},
@@ -182,10 +182,10 @@ inline std::vector<compared_row> compared_rows() {
         {"points counted", "development", generative_rendering, vivid, [](s& x) { x.injection.counts_points = true; }},
         {"variance of sources", "development", generative_rendering, vivid, [](s& x) { x.injection.variance.target = variance_target::sources; }},
         {"held keyframes", "development", generative_rendering, vivid, [](s& x) { x.keyframes.drawing = keyframe_drawing::held; }},
-        {"means of all frames", "development", generative_rendering, vivid, [](s& x) { x.normalization.target = adain_target::all_frames; }},
-        {"supported deviations", "development", generative_rendering, vivid, [](s& x) { x.normalization.statistics = adain_statistics::mean_and_supported_deviation; }},
-        {"mean and deviation", "development", generative_rendering, vivid, [](s& x) { x.normalization.statistics = adain_statistics::mean_and_deviation; }},
-        {"no normalisation", "development", generative_rendering, vivid, [](s& x) { x.normalization.enabled = false; }},
+        {"means normalised", "development", generative_rendering, vivid, [](s& x) { x.normalization.enabled = true; }},
+        {"means of all frames", "development", generative_rendering, vivid, [](s& x) { x.normalization.enabled = true; x.normalization.target = adain_target::all_frames; }},
+        {"supported deviations", "development", generative_rendering, vivid, [](s& x) { x.normalization.enabled = true; x.normalization.statistics = adain_statistics::mean_and_supported_deviation; }},
+        {"mean and deviation", "development", generative_rendering, vivid, [](s& x) { x.normalization.enabled = true; x.normalization.statistics = adain_statistics::mean_and_deviation; }},
     };
     // clang-format on
 }

@@ -48,7 +48,7 @@ struct consistency_options {
             ->excludes(with);
         group
             ->add_option("--consensus-window", window,
-                         "shares of the steps between which they do, each 0 to 1 (0 and 0.6)")
+                         "shares of the steps between which they do, each 0 to 1 (0 and 0.7)")
             ->expected(2)
             ->type_name("BEGIN END");
         group
@@ -63,7 +63,7 @@ struct consistency_options {
                     "--normalization", normalization,
                     "what of the backgrounds' latents is made alike: means, supported (means, and deviations as\n"
                     "far as their pixels prove a difference), wavelets (low bands), paper (means and\n"
-                    "deviations) or none (means; baselines none)")
+                    "deviations) or none (the preset's: none with vivid, else means; baselines none)")
                 ->check(CLI::IsMember(kinds).description(""))
                 ->type_name("KIND");
         group

@@ -346,8 +346,9 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         options.injection.apply_to(settings);
         settings.injection.pre_attention = !no_pre;
         settings.injection.post_attention = !no_post;
-        settings.normalization.enabled = !no_adain;
+        settings.normalization.enabled = settings.normalization.enabled && !no_adain;
         if (adain_deviations) {
+            settings.normalization.enabled = true;
             settings.normalization.statistics = adain_statistics::mean_and_deviation;
         }
         if (options.method == render_method::per_frame) {

@@ -32,7 +32,7 @@ TEST_SUITE("blending/consensus_settings") {
         consensus_settings<Real> const settings;
         CHECK(settings.enabled);
         CHECK(settings.window_begin == 0);
-        CHECK(settings.window_end == Real(0.6));
+        CHECK(settings.window_end == Real(0.7));
         CHECK(settings.strength(7) == 1);
         CHECK(settings.sources.count == 16);
         CHECK(settings.sources.drawing == keyframe_drawing::stratified);
@@ -46,7 +46,7 @@ TEST_SUITE("blending/consensus_settings") {
         CHECK(refusal_of([](auto&) {}).empty());
         CHECK(refusal_of([](auto& s) { s.window_end = 1.5; }) ==
               "render: settings.consensus.window_end is 1.500000, expected 0 <= window_begin <= window_end <= 1");
-        CHECK(refusal_of([](auto& s) { s.window_begin = 0.7; }).find("window_end is 0.6") != std::string::npos);
+        CHECK(refusal_of([](auto& s) { s.window_begin = 0.8; }).find("window_end is 0.7") != std::string::npos);
         CHECK(!refusal_of([](auto& s) { s.window_begin = std::numeric_limits<double>::quiet_NaN(); }).empty());
         CHECK(refusal_of([](auto& s) { s.strength = nullptr; }) ==
               "render: settings.consensus.strength is empty, expected a function");

@@ -22,7 +22,7 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(settings.injection.keeps_own_copy);
         CHECK(!settings.normalization.on_noisy_latents);
         // What is not the paper's.
-        CHECK(settings.normalization.statistics == adain_statistics::mean);
+        CHECK(!settings.normalization.enabled);
         CHECK(settings.consensus.enabled);
         CHECK(settings.latents_grid_alpha == 0);
     }
@@ -69,7 +69,7 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(vivid.injection.post_attention);
         CHECK(vivid.injection.length_correction == 0);
         CHECK(vivid.injection.variance.target == variance_target::none);
-        CHECK(vivid.normalization.statistics == adain_statistics::mean);
+        CHECK(!vivid.normalization.enabled);
         CHECK(vivid.correspondence.kind == correspondence_kind::footprint);
         CHECK(vivid.consensus.enabled);
         CHECK(vivid.latents_grid_alpha == 0);
@@ -79,6 +79,7 @@ TEST_SUITE("pipeline/render_settings") {
         CHECK(!plain.consensus.enabled);
         CHECK(plain.latents_grid_alpha == 1);
         CHECK(plain.correspondence.kind == correspondence_kind::footprint);
+        CHECK(plain.normalization.enabled);
         CHECK(plain.normalization.statistics == adain_statistics::mean);
     }
     TEST_CASE("alpha is shared out at the latents' own grid alone") {

@@ -21,7 +21,7 @@ struct consensus_settings {
     /// Steps that have it: those whose share step / steps lies in [window_begin, window_end). Late steps draw detail finer
     /// than a latent cell can agree on.
     Real window_begin = 0;
-    Real window_end = Real(0.6); ///< see window_begin
+    Real window_end = Real(0.7); ///< see window_begin
     /// How far estimates move towards it, in [0, 1], by step of the window.
     std::function<Real(std::size_t step)> strength = [](std::size_t) { return Real(1); };
     /// Frames that it is the mean of, the same for all frames of a step, drawn anew each step from numbers of their own;
@@ -29,7 +29,7 @@ struct consensus_settings {
     keyframe_settings sources{.count = 16, .drawing = keyframe_drawing::stratified, .frames = {}, .seed = 0};
     Real first_fill_share = 0; ///< of the first source that sees a point; the rest is the average of all that do
     texel_average average = texel_average::by_quality; ///< how the average weighs the sources
-    quality_settings quality;                          ///< what qualities do besides, over the steps of the run
+    quality_settings quality{};                        ///< what qualities do besides, over the steps of the run
     /// The most that a channel's deviation is multiplied by to give back what averaging took; 1 gives nothing back.
     Real most_gain = 2;
     /// Whether a cell that shows its object partly moves by that share alone; else every covered cell moves alike.

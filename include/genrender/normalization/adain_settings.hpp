@@ -38,7 +38,7 @@ enum class adain_target : std::uint8_t {
 /// How latents are normalised.
 template <class Real>
 struct adain_settings {
-    bool enabled = true;                                  ///< whether latents are normalised at all
+    bool enabled = false; ///< whether a run normalises latents at all; a consensus of the background makes it needless
     adain_statistics statistics = adain_statistics::mean; ///< what is made alike
     adain_target target = adain_target::first_frame;      ///< with whose
     /// Steps in which it runs: those whose share step / steps lies in [window_begin, window_end).

@@ -77,9 +77,11 @@ struct render_settings {
     /// Consistent and vivid, what measured best on development scenes (docs/presets.md): the defaults.
     static render_settings vivid() { return {}; }
 
-    /// Alg. 1 alone, with the defaults' readings of the paper and nothing besides: no consensus, and eq. 6 at every site.
+    /// Alg. 1 alone, with the defaults' readings of the paper and nothing besides: no consensus, eq. 6 at every site, and
+    /// latent normalisation, of means.
     static render_settings plain() {
         render_settings settings;
+        settings.normalization.enabled = true;
         settings.consensus.enabled = false;
         settings.latents_grid_alpha = 1;
         return settings;
