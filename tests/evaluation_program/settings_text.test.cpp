@@ -36,10 +36,16 @@ TEST_SUITE("evaluation_program/settings_text") {
             [](auto& x) { x.keyframes.frames = {{0}}; },
             [](auto& x) { x.correspondence.kind = correspondence_kind::texel_grid; },
             [](auto& x) { x.correspondence.texels.T = 64; },
-            [](auto& x) { x.normalization.enabled = false; },
+            [](auto& x) { x.normalization.enabled = true; },
             [](auto& x) { x.normalization.window_end = 0.5F; },
             [](auto& x) { x.injection.keeps_own_copy = false; },
             [](auto& x) { x.window_begin = 0.1F; },
+            [](auto& x) { x.latents_grid_alpha = 0.5F; },
+            [](auto& x) { x.consensus.enabled = false; },
+            [](auto& x) { x.consensus.agrees_on_background = false; },
+            [](auto& x) { x.consensus.background_distance = 3; },
+            [](auto& x) { x.consensus.quality.exponent_begin = 2; },
+            [](auto& x) { x.consensus.quality.exponent_end = 2; },
             [](auto& x) { x.alpha = [](std::size_t step, attention_site const&) { return step == 4 ? 0.6F : 0.7F; }; },
             [](auto& x) {
                 x.alpha = [](std::size_t, attention_site const& site) { return site.name == "up" ? 0.6F : 0.7F; };

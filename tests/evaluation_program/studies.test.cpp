@@ -16,9 +16,9 @@ TEST_SUITE("evaluation_program/studies") {
     TEST_CASE("methods have twelve runs a row, ablations four, beside as many painted renders") {
         auto const usual = usual_studies();
         REQUIRE(usual.size() == 2);
-        CHECK(runs_of(usual[0]).size() == (10 + 1) * 12);
-        CHECK(rows_of(usual[1]).size() == 15); // with both presets
-        CHECK(runs_of(usual[1]).size() == (15 + 1) * 4);
+        CHECK(runs_of(usual[0]).size() == (11 + 1) * 12);
+        CHECK(rows_of(usual[1]).size() == 17); // with both presets
+        CHECK(runs_of(usual[1]).size() == (17 + 1) * 4);
     }
 
     TEST_CASE("each caption is paired with one scene, and begins again with the first") {
@@ -48,7 +48,7 @@ TEST_SUITE("evaluation_program/studies") {
     TEST_CASE("named rows come first and once, and a name that no row has is refused") {
         study some{"some", "Some", {"method"}, {"vivid"}};
         auto const rows = rows_of(some);
-        CHECK(rows.size() == 10);
+        CHECK(rows.size() == 11);
         CHECK(rows.front().name == "vivid");
         some.rows = {"vivvid"};
         CHECK_THROWS_AS(rows_of(some), value_error);

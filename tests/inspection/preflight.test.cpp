@@ -148,7 +148,7 @@ TEST_SUITE("inspection/preflight") {
         for (std::size_t p = 0; p < 64 * 64; ++p) {
             maps.coverage(1, p / 64, p % 64) = 1;
         }
-        render_settings<float> settings;
+        auto settings = render_settings<float>::plain();
         CHECK(says(flown(maps, settings), no_background));
         settings.normalization.fallback = without_background::all_pixels;
         CHECK_FALSE(says(flown(maps, settings), no_background));

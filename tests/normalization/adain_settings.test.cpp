@@ -9,10 +9,11 @@
 using namespace genrender;
 
 TEST_SUITE("normalization/adain_settings") {
-    TEST_CASE_TEMPLATE("by default means become the first frame's and the paper's form is one setting away", Real,
-                       float, double) {
+    TEST_CASE_TEMPLATE(
+        "a run that normalises has the first frame's means by default, and the paper's form is one setting away", Real,
+        float, double) {
         adain_settings<Real> settings;
-        CHECK(settings.enabled);
+        CHECK(!settings.enabled);
         CHECK(settings.statistics == adain_statistics::mean);
         CHECK(settings.target == adain_target::first_frame);
         CHECK(settings.least_pixels == 2);

@@ -165,6 +165,7 @@ TEST_SUITE("pipeline/estimate_consensus") {
     TEST_CASE("it runs in its window with the strength of the step") {
         strip_of_frames world;
         world.settings.consensus.window_begin = 0.2;
+        world.settings.consensus.window_end = 0.6;
         world.settings.consensus.strength = [](std::size_t step) { return step == 4 ? 0.0 : step == 3 ? 0.25 : 1.0; };
         for (std::size_t const step : {0U, 1U, 4U, 6U, 9U}) {
             CHECK(!has_surface_consensus(world.settings, step));
