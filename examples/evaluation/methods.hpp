@@ -2,7 +2,6 @@
 // [GR sec. 4, tables 1 and 2, fig. 6] Every method, baseline, ablation and variant that is compared: one line each.
 #pragma once
 
-#include <genrender/attention/attention_site.hpp>
 #include <genrender/baselines/baseline_settings.hpp>
 #include <genrender/baselines/per_frame.hpp>
 #include <genrender/baselines/pix2video.hpp>
@@ -89,12 +88,6 @@ inline row_settings baseline_uv_corrected() {
 }
 
 // Changes.
-
-/// The same alpha at every step and site.
-template <int Hundredths>
-void alpha_of(row_settings& settings) {
-    settings.alpha = [](std::size_t, attention_site const&) { return static_cast<float>(Hundredths) / 100; };
-}
 
 /// Features by texels of a resolution; 0: matched to the maps.
 template <std::size_t T>

@@ -6,6 +6,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
 TEST_SUITE("maps/background_mask") {
     using namespace genrender;
 
@@ -37,5 +41,19 @@ TEST_SUITE("maps/background_mask") {
                              value_error);
         CHECK_THROWS_AS(background_mask(to_uv_view(maps), {4, 5}), value_error);
         CHECK_THROWS_AS(background_mask(to_uv_view(maps), {0, 4}), value_error);
+    }
+
+    TEST_CASE("background is open where no object is near") {
+        // One object, in the second column of the first row.
+        std::vector<std::uint8_t> const mask{1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+        strided_view<std::uint8_t const, 3> const background(mask.data(), {1, 3, 5});
+        auto const open_at = [&](std::size_t distance) {
+            auto const open = open_background(background, distance);
+            return std::vector<std::uint8_t>(open.data(), open.data() + open.size());
+        };
+        CHECK(open_at(0) == mask);
+        CHECK(open_at(1) == std::vector<std::uint8_t>{0, 0, 0, 1, 1, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1});
+        CHECK(open_at(2) == std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+        CHECK(open_at(9) == std::vector<std::uint8_t>(15, 0));
     }
 }

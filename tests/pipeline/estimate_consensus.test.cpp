@@ -209,19 +209,6 @@ TEST_SUITE("pipeline/estimate_consensus") {
         CHECK_THROWS_WITH_AS(background_plan<double>(background, sources, {3}),
                              "background_plan: i is 3, expected a frame of the background", value_error);
     }
-    TEST_CASE("background is open where no object is near") {
-        // One object, in the second column of the first row.
-        std::vector<std::uint8_t> const mask{1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-        strided_view<std::uint8_t const, 3> const background(mask.data(), {1, 3, 5});
-        auto const open_at = [&](std::size_t distance) {
-            auto const open = open_background(background, distance);
-            return std::vector<std::uint8_t>(open.data(), open.data() + open.size());
-        };
-        CHECK(open_at(0) == mask);
-        CHECK(open_at(1) == std::vector<std::uint8_t>{0, 0, 0, 1, 1, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1});
-        CHECK(open_at(2) == std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
-        CHECK(open_at(9) == std::vector<std::uint8_t>(15, 0));
-    }
     TEST_CASE("background agrees at its place on the screen where its noise stands still") {
         frames_of<unseen_strip> world; // The second cell shows something that no source sees.
         std::vector<std::uint8_t> const mask{1, 0, 1, 1};

@@ -132,6 +132,7 @@ TEST_SUITE("pipeline/memory_plan") {
         CHECK(without.bytes.consensus == 0);
         CHECK(without.work.consensus_bytes == 0);
         settings.consensus.enabled = true;
+        settings.consensus.agrees_on_background = false;
         settings.consensus.sources = {
             .count = 3, .drawing = keyframe_drawing::fixed, .frames = {{2}, {5}, {7}}, .seed = 0};
         settings.correspondence.kind = correspondence_kind::texel_grid;
@@ -143,6 +144,11 @@ TEST_SUITE("pipeline/memory_plan") {
         // Both steps begin within the window: at 0 and at a half.
         CHECK(plan.work.consensus_matches == 2 * 20 * 3 * 24);
         CHECK(plan.work.consensus_bytes == 2 * 96 * 4.0 * (2 * 3 + 20 * (2 * 3 + 5)));
+        // One that agrees on the background has a mask of its own and looks up no more cells.
+        settings.consensus.agrees_on_background = true;
+        CHECK(plan_memory(run, settings).bytes.background == 3 * 20 * 24);
+        CHECK(plan_memory(run, settings).work.consensus_matches == 2 * 20 * 3 * 24);
+        settings.consensus.agrees_on_background = false;
         settings.consensus.window_end = 0.5;
         CHECK(plan_memory(run, settings).work.consensus_matches == 20 * 3 * 24);
         settings.consensus.fades_at_silhouettes = false;

@@ -5,15 +5,15 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/strided_view.hpp>
+#include <genrender/core/tensor.hpp>
 #include <genrender/evaluation/pixel_objects.hpp>
+#include <genrender/maps/background_mask.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace genrender {
 
@@ -25,36 +25,21 @@ template <class Real>
 std::optional<double> background_flicker(strided_view<Real, 4> images, pixel_objects const& objects,
                                          std::size_t margin = 0) {
     require_images_of("background_flicker", images, objects);
-    auto const height = images.extent(2);
-    auto const width = images.extent(3);
-    // 1 where a pixel of a frame counts: first along its row, then along its column.
-    auto const open_pixels = [&](std::uint32_t i) {
-        std::vector<char> along_row(height * width, 1);
-        std::vector<char> open(height * width, 1);
-        for (std::size_t pass = 0; pass < 2; ++pass) {
-            for (std::size_t row = 0; row < height; ++row) {
-                for (std::size_t column = 0; column < width; ++column) {
-                    auto const at = pass == 0 ? column : row;
-                    auto const end = std::min(pass == 0 ? width : height, at + margin + 1);
-                    for (auto n = at - std::min(at, margin); n < end; ++n) {
-                        auto const is_open = pass == 0 ? objects.is_background({i}, {static_cast<std::uint32_t>(row),
-                                                                                     static_cast<std::uint32_t>(n)})
-                                                       : along_row[n * width + column] != 0;
-                        (pass == 0 ? along_row : open)[row * width + column] &= is_open ? 1 : 0;
-                    }
-                }
+    auto background = tensor<std::uint8_t, 3>::from_shape({images.extent(0), images.extent(2), images.extent(3)});
+    for (std::uint32_t i = 0; i < images.extent(0); ++i) {
+        for (std::uint32_t row = 0; row < images.extent(2); ++row) {
+            for (std::uint32_t column = 0; column < images.extent(3); ++column) {
+                background(i, row, column) = objects.is_background({i}, {row, column}) ? 1 : 0;
             }
         }
-        return open;
-    };
+    }
+    auto const open = open_background(to_view(std::as_const(background)), margin);
     double squares = 0;
     std::size_t count = 0;
-    auto before = images.extent(0) > 0 ? open_pixels(0) : std::vector<char>();
     for (std::uint32_t i = 1; i < images.extent(0); ++i) {
-        auto after = open_pixels(i);
-        for (std::size_t row = 0; row < height; ++row) {
-            for (std::size_t column = 0; column < width; ++column) {
-                if (before[row * width + column] == 0 || after[row * width + column] == 0) {
+        for (std::size_t row = 0; row < images.extent(2); ++row) {
+            for (std::size_t column = 0; column < images.extent(3); ++column) {
+                if (open(i - 1, row, column) == 0 || open(i, row, column) == 0) {
                     continue;
                 }
                 for (std::size_t c = 0; c < images.extent(1); ++c) {
@@ -65,7 +50,6 @@ std::optional<double> background_flicker(strided_view<Real, 4> images, pixel_obj
                 }
             }
         }
-        before = std::move(after);
     }
     return count > 0 ? std::optional(std::sqrt(squares / static_cast<double>(count))) : std::nullopt;
 }

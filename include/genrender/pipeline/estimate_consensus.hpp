@@ -10,7 +10,6 @@
 #include <genrender/core/random.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
-#include <genrender/core/tensor.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/noise/background_noise.hpp>
 #include <genrender/pipeline/render_settings.hpp>
@@ -71,28 +70,6 @@ std::vector<frame_index> consensus_sources(render_settings<Real> const& settings
     return draw_keyframes(sources, frames, step, random_stream::consensus_sources);
 }
 
-/// Of `background` [frames, height, width] (background_mask), the cells that have background alone as far as `distance`
-/// cells around them; beyond the grid counts as background.
-inline tensor<std::uint8_t, 3> open_background(strided_view<std::uint8_t const, 3> background, std::size_t distance) {
-    auto const [frames, height, width] = background.extents();
-    auto open = tensor<std::uint8_t, 3>::from_shape({frames, height, width});
-    for (std::size_t i = 0; i < frames; ++i) {
-        for (std::size_t row = 0; row < height; ++row) {
-            for (std::size_t column = 0; column < width; ++column) {
-                std::uint8_t is_open = 1;
-                for (auto r = row - std::min(row, distance); r < std::min(height, row + distance + 1); ++r) {
-                    for (auto c = column - std::min(column, distance); c < std::min(width, column + distance + 1);
-                         ++c) {
-                        is_open = background(i, r, c) == 0 ? std::uint8_t{0} : is_open;
-                    }
-                }
-                open(i, row, column) = is_open;
-            }
-        }
-    }
-    return open;
-}
-
 /// For every cell of frame i that `background` [frames, height, width] marks, the cells at its place of the `sources` that
 /// it marks too, with weights alike; other cells have no entry. Throws value_error if frame i does not exist.
 template <class Real>
@@ -122,8 +99,7 @@ blend_plan<Real> background_plan(strided_view<std::uint8_t const, 3> background,
 /// What estimates of a run are told of its cells, each [frames, height, width] of the latents' grid, or nothing.
 struct latent_cells {
     strided_view<std::uint8_t const, 3> shares{}; ///< that of cell_shares, for a consensus that fades at silhouettes
-    strided_view<std::uint8_t const, 3>
-        background{}; ///< that of background_mask, for one that agrees on the background
+    strided_view<std::uint8_t const, 3> background{}; ///< that of open_background, for one that agrees there
 };
 
 /// Moves the clean estimates x0 [frames, channels, height, width] of a step towards their consensus, where the settings

@@ -23,7 +23,7 @@ namespace genrender {
 struct planned_bytes {
     std::size_t maps = 0;           ///< UV or rest positions, object and coverage: the caller's, not in `peak`
     std::size_t latents = 0;        ///< z, clean estimates and what the sampler remembers
-    std::size_t background = 0;     ///< mask of latent normalisation, and shares of cells for a consensus
+    std::size_t background = 0;     ///< masks of latent normalisation and of a consensus, and its shares of cells
     std::size_t correspondence = 0; ///< which pixel or texel stands for each token, at all resolutions
 
     std::size_t bank = 0;             ///< K_KF, V_KF and F_KF of all places that take part
@@ -196,7 +196,8 @@ memory_plan plan_memory(run_description const& run, render_settings<Real> const&
     bytes.latents = detail::latent_stacks(settings.sampler) * run.frames * latent_bytes;
     bytes.maps = run.frames * run.map_grid.size() * (run.map_dimensions * sizeof(float) + 5);
     auto const has_shares = surface_evaluations > 0 && settings.consensus.fades_at_silhouettes;
-    bytes.background = (has_shares ? 2 : 1) * run.frames * run.latent_grid.size();
+    auto const masks = 1 + (has_shares ? 1U : 0U) + (has_background_consensus(settings) ? 1U : 0U);
+    bytes.background = masks * run.frames * run.latent_grid.size();
     auto const by_texels = settings.correspondence.kind == correspondence_kind::texel_grid;
     auto all_grids = grids;
     if (surface_evaluations > 0) {

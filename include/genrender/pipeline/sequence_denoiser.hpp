@@ -5,6 +5,8 @@
 #include <genrender/core/begin_header.inl>
 
 #include <genrender/core/finite.hpp>
+#include <genrender/core/tensor.hpp>
+#include <genrender/maps/background_mask.hpp>
 #include <genrender/normalization/latent_normalizer.hpp>
 #include <genrender/pipeline/estimate_consensus.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
