@@ -58,9 +58,9 @@ TEST_SUITE("blending/mix_rows_keeping_variance") {
         double moment(Of of) const {
             double sum = 0;
             double weight = 0;
-            for (auto const& [x, w] : numbers) {
-                sum += w * of(x);
-                weight += w;
+            for (auto const *number = numbers.data(), *end = number + numbers.size(); number != end; ++number) {
+                sum += number->second * of(number->first);
+                weight += number->second;
             }
             return sum / weight;
         }

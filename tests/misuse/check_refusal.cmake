@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Compiles FILE, syntax only. A `.fail.cpp` must be refused in all the words that it expects, and within the first five lines of
-# what the compiler says; any other file must not be refused.
+# what the compiler says; any other file must not be refused. PRECOMPILED, if not empty, holds headers read beforehand.
 cmake_minimum_required(VERSION 3.25)
 
 set(flags -std=c++20)
@@ -24,11 +24,10 @@ foreach(comment IN LISTS comments)
     endif()
 endforeach()
 
-foreach(folder IN LISTS FOLDERS)
-    if(NOT folder IN_LIST IMPLICIT_FOLDERS)
-        list(APPEND flags -isystem ${folder})
-    endif()
-endforeach()
+if(PRECOMPILED AND flags STREQUAL "-std=c++20")
+    list(APPEND flags -isystem ${PRECOMPILED})
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/include_folders.cmake)
 set(ENV{LC_ALL} C)
 execute_process(COMMAND ${COMPILER} ${flags} -fsyntax-only ${FILE} RESULT_VARIABLE result
     OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -45,7 +44,10 @@ elseif(NOT sentences)
     message(FATAL_ERROR "${FILE}: names no sentence for ${COMPILER_ID}")
 endif()
 without_list_characters(output)
-# Who made a mistake reads the top of what is said.
+# Who made a mistake reads the top of what is said. That a header was included is one line, and not said of one read beforehand.
+if(PRECOMPILED AND NOT output MATCHES "^In file included from ${FILE}")
+    string(PREPEND output "\n")
+endif()
 string(REGEX MATCH "^([^\n]*\n[^\n]*\n?[^\n]*\n?[^\n]*\n?[^\n]*)" first_lines "${output}")
 foreach(sentence IN LISTS sentences)
     string(FIND "${first_lines}" "${sentence}" position)

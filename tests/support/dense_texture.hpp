@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,13 +20,15 @@ namespace genrender::testing {
 /// Textures of T x T texels for a number of objects, dense.
 template <class Real>
 struct dense_texture {
+    std::size_t objects = 0;
     std::size_t T = 0;
     std::size_t channels = 0;
-    std::vector<Real> values;         // [objects, T, T, channels]
+    std::unique_ptr<Real[]> values;   // [objects, T, T, channels]; large, and made at once without optimisation, too
     std::vector<std::uint8_t> filled; // [objects, T, T]
 
-    dense_texture(std::size_t objects, std::size_t texels, std::size_t features)
-        : T(texels), channels(features), values(objects * T * T * channels), filled(objects * T * T) {}
+    dense_texture(std::size_t of_objects, std::size_t texels, std::size_t features)
+        : objects(of_objects), T(texels), channels(features), values(new Real[objects * T * T * channels]()),
+          filled(objects * T * T) {}
 
     std::size_t texel(std::uint32_t object, float u, float v) const {
         auto const index = [this](float coordinate) {
@@ -73,7 +76,7 @@ dense_texture<Real> dense_unproject(uv_maps const& maps, std::size_t frame, stri
 /// order.
 template <class Real>
 dense_texture<Real> dense_blend(std::vector<dense_texture<Real>> const& frames, Real first_fill_share = Real(0.5)) {
-    auto unified = frames.front();
+    dense_texture<Real> unified(frames.front().objects, frames.front().T, frames.front().channels);
     for (std::size_t t = 0; t < unified.filled.size(); ++t) {
         for (std::size_t c = 0; c < unified.channels; ++c) {
             Real sum = 0;

@@ -155,10 +155,14 @@ inline void write_safetensors(std::string const& path, std::map<std::string, saf
         require_extents("write_safetensors", name.c_str(), std::array{source.values.size()},
                         std::array{internal::checked_product(source.shape).value_or(0)});
         auto const begin = data.size();
-        for (auto const value : source.values) {
-            auto const half = half_of_float(value);
-            data.append(halves ? reinterpret_cast<char const*>(&half) : reinterpret_cast<char const*>(&value),
-                        halves ? sizeof half : sizeof value);
+        auto const* const values = source.values.data();
+        auto const count = source.values.size();
+        if (halves) {
+            std::vector<std::uint16_t> rounded(count);
+            std::transform(values, values + count, rounded.data(), half_of_float);
+            data.append(reinterpret_cast<char const*>(rounded.data()), count * sizeof(std::uint16_t));
+        } else {
+            data.append(reinterpret_cast<char const*>(values), count * sizeof(float));
         }
         header[name] = {
             {"dtype", halves ? "F16" : "F32"}, {"shape", source.shape}, {"data_offsets", {begin, data.size()}}};
