@@ -36,9 +36,9 @@ enum class model_uvs {
 
 /// What a reader found of one mesh, as the file has it.
 struct model_arrays {
-    mesh surface;                       ///< `uvs` is empty where the file has none that are wanted
-    std::vector<joint_weights> weights; ///< one a vertex, of any sum; empty without joints
-    std::size_t joints = 0;             ///< how many joints there are for the weights to name
+    mesh surface;                                      ///< `uvs` is empty where the file has none that are wanted
+    std::vector<joint_weights> weights;                ///< one a vertex, of any sum; empty without joints
+    std::size_t joints = 0;                            ///< how many joints there are for the weights to name
     std::vector<std::vector<glm::vec3>> morph_offsets; ///< [targets][vertices], from the surface's positions
 };
 
