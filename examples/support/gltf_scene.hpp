@@ -5,8 +5,10 @@
 #include "gltf_accessor.hpp"
 #include "gltf_animation.hpp"
 #include "gltf_document.hpp"
+#include "gltf_instances.hpp"
 #include "gltf_mesh.hpp"
 #include "gltf_nodes.hpp"
+#include "gltf_skin.hpp"
 #include "model_assembly.hpp"
 #include "model_scene.hpp"
 #include "model_shape.hpp"
@@ -44,7 +46,7 @@ public:
     explicit gltf_scene(std::filesystem::path const& path, model_assembly const& assembly = {})
         : document_(read_gltf(path)), nodes_(document_, assembly.up == model_up::z ? z_up_to_y_up() : glm::mat4(1)) {
         gltf_accessors accessors(document_);
-        read_skins(accessors);
+        skins_ = gltf_skins(document_, accessors);
         animations_ = gltf_animations(document_, accessors);
         list_takes();
         for (auto const node : nodes_.in_scene()) {
@@ -56,7 +58,7 @@ public:
         }
         if (document_.model.scenes.size() > 1) {
             document_.notes.push_back("The file has " + std::to_string(document_.model.scenes.size()) +
-                                      " scenes, of which the first that it shows is used.");
+                                      " scenes; its default one is shown.");
         }
         if (assembly.up == model_up::z) {
             document_.notes.push_back("The file's z axis is taken as up.");
@@ -112,11 +114,6 @@ public:
     }
 
 private:
-    struct skin_joints {
-        std::vector<std::size_t> joints; ///< nodes
-        std::vector<glm::mat4> bind;     ///< one more than joints: the identity
-    };
-
     struct placed_shape {
         std::shared_ptr<model_shape const> shape;
         std::size_t node = 0;
@@ -130,34 +127,6 @@ private:
         float vertical_fov = 0;
         float aspect = 0; ///< width / height; 0 where the file leaves it open
     };
-
-    void read_skins(gltf_accessors& accessors) {
-        for (auto const& source : document_.model.skins) {
-            auto const what = "skin " + std::to_string(skins_.size());
-            auto& skin = skins_.emplace_back();
-            for (auto const joint : source.joints) {
-                if (joint < 0 || static_cast<std::size_t>(joint) >= document_.model.nodes.size()) {
-                    document_.refuse(what + " has node " + std::to_string(joint) + " as a joint, expected one of " +
-                                     std::to_string(document_.model.nodes.size()));
-                }
-                skin.joints.push_back(static_cast<std::size_t>(joint));
-            }
-            skin.bind.assign(skin.joints.size() + 1, glm::mat4(1));
-            if (source.inverseBindMatrices < 0) {
-                continue;
-            }
-            auto const matrices =
-                accessors.floats(source.inverseBindMatrices, TINYGLTF_TYPE_MAT4, "the inverse binds of " + what);
-            if (matrices.count < skin.joints.size()) {
-                document_.refuse(what + " has " + std::to_string(matrices.count) + " inverse binds, expected one for " +
-                                 "each of its " + std::to_string(skin.joints.size()) + " joints");
-            }
-            for (std::size_t i = 0; i < 16 * skin.joints.size(); ++i) {
-                auto const within = static_cast<int>(i % 16);
-                skin.bind[i / 16][within / 4][within % 4] = matrices.values[i];
-            }
-        }
-    }
 
     void list_takes() {
         for (auto const& animation : animations_) {
@@ -210,7 +179,7 @@ private:
         auto const& mesh = meshes[static_cast<std::size_t>(source.mesh)];
         auto const name = source.name.empty() ? mesh.name : source.name;
         auto const& weights = source.weights.empty() ? mesh.weights : source.weights;
-        auto const instances = instances_of(node, accessors);
+        auto const instances = gltf_instances(document_, accessors, node);
         for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
             auto const shape = shape_of(source, i, name, accessors, assembly);
             if (shape->report().triangles == 0) {
@@ -253,50 +222,11 @@ private:
         return shape;
     }
 
-    /// Where the node's mesh is drawn, in the node's space; once in its middle without EXT_mesh_gpu_instancing.
-    std::vector<glm::mat4> instances_of(std::size_t node, gltf_accessors& accessors) const {
-        auto const& extensions = document_.model.nodes[node].extensions;
-        auto const found = extensions.find("EXT_mesh_gpu_instancing");
-        if (found == extensions.end() || !found->second.Has("attributes")) {
-            return {glm::mat4(1)};
-        }
-        auto const& attributes = found->second.Get("attributes");
-        std::vector<gltf_transform> places;
-        auto is_first = true;
-        auto const each = [&](char const* name, int type, auto const& place) {
-            if (!attributes.Has(name) || !attributes.Get(name).IsInt()) {
-                return;
-            }
-            auto const what = std::string(name) + " of the instances of node " + std::to_string(node);
-            auto const numbers = accessors.floats(attributes.Get(name).GetNumberAsInt(), type, what);
-            if (!is_first && numbers.count != places.size()) {
-                document_.refuse(what + " is for " + std::to_string(numbers.count) + ", expected " +
-                                 std::to_string(places.size()));
-            }
-            is_first = false;
-            places.resize(numbers.count);
-            for (std::size_t i = 0; i < places.size(); ++i) {
-                place(places[i], numbers.values.data() + i * numbers.width);
-            }
-        };
-        each("TRANSLATION", TINYGLTF_TYPE_VEC3, [](auto& place, float const* v) {
-            place.translation = {v[0], v[1], v[2]};
-        });
-        each("ROTATION", TINYGLTF_TYPE_VEC4,
-             [](auto& place, float const* v) { place.rotation = glm::quat(v[3], v[0], v[1], v[2]); });
-        each("SCALE", TINYGLTF_TYPE_VEC3, [](auto& place, float const* v) { place.scale = {v[0], v[1], v[2]}; });
-        std::vector<glm::mat4> matrices;
-        for (auto const& place : places) {
-            matrices.push_back(place.matrix());
-        }
-        return is_first ? std::vector{glm::mat4(1)} : matrices;
-    }
-
     static constexpr std::size_t most_vertices = 100'000'000; ///< of all objects: more than a gigabyte a frame
 
     gltf_document document_;
     gltf_nodes nodes_;
-    std::vector<skin_joints> skins_;
+    std::vector<gltf_skin> skins_;
     std::vector<gltf_animation> animations_;
     std::map<std::tuple<int, std::size_t, int>, std::shared_ptr<model_shape const>> shapes_; ///< mesh, primitive, skin
     std::vector<placed_shape> objects_;
