@@ -2,6 +2,8 @@
 // A file of glTF 2.0, as text or binary, with its buffers; pictures and materials are left out.
 #pragma once
 
+#include "gltf_values.hpp"
+
 #include <genrender/core/error.hpp>
 
 #include <nlohmann/json.hpp>
@@ -207,6 +209,7 @@ inline gltf_document read_gltf(std::filesystem::path const& path) {
     }
     try {
         detail::check_gltf_extensions(json, document);
+        check_gltf_values(json);
         auto const buffers = json.value("buffers", nlohmann::json::array());
         json.erase("buffers");
         auto const text = json.dump();

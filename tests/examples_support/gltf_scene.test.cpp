@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -196,19 +197,20 @@ TEST_SUITE("examples_support/gltf_scene") {
         }
     }
 
-    TEST_CASE("UVs of normalised bytes fill each face of a cube") {
+    TEST_CASE("UVs of normalised bytes are shares of the texture") {
         gltf_scene const scene(field("uv_ubyte.gltf"));
         CHECK(!scene.objects().at(0).has_made_uvs);
+        CHECK(scene.objects()[0].overlap.overlapping == 0);
         auto const object = scene.objects_at(0).at(0);
         REQUIRE(object.surface->uvs.size() == 24);
-        for (std::size_t face = 0; face < 6; ++face) {
-            std::vector<std::array<float, 2>> corners;
-            for (std::size_t i = 0; i < 4; ++i) {
-                auto const& uv = object.surface->uvs[4 * face + i];
-                corners.push_back({uv.x, uv.y});
-            }
-            std::sort(corners.begin(), corners.end());
-            CHECK(corners == std::vector<std::array<float, 2>>{{0, 0}, {0, 1}, {1, 0}, {1, 1}});
+        // Each face of the cube has a rectangle of 77 x 115 bytes: three in a row, in two rows
+        for (std::size_t i = 0; i < 24; ++i) {
+            auto const face = i / 4;
+            auto const is_right = i % 4 == 1 || i % 4 == 2;
+            auto const u = 4 + 85 * (face % 3) + (is_right ? 77 : 0);
+            auto const v = 6 + 128 * (face / 3) + (i % 4 >= 2 ? 115 : 0);
+            CHECK(object.surface->uvs[i].x == doctest::Approx(static_cast<double>(u) / 255));
+            CHECK(object.surface->uvs[i].y == doctest::Approx(static_cast<double>(v) / 255));
         }
     }
 
@@ -694,6 +696,22 @@ TEST_SUITE("examples_support/gltf_scene") {
         CHECK(reason(replaced(whole, R"("2.0")", R"("1.0")")) == "it is of version 1.0");
         CHECK(reason(replaced(whole, R"("version": "2.0")", R"("version": "2.1", "minVersion": "2.1")")) ==
               "it is of version 2.1");
+        CHECK(reason(replaced(whole, R"("mesh": 0)", R"("mesh": "0")")) == "mesh is not a whole number of at least 0");
+        CHECK(reason(replaced(whole, R"("mesh": 0)", R"("mesh": -1)")) == "mesh is not a whole number of at least 0");
+        CHECK(reason(replaced(whole, R"("mesh": 0)", R"("mesh": 0.5)")) == "mesh is not a whole number of at least 0");
+        CHECK(reason(replaced(whole, R"("mesh": 0)", R"("mesh": 4294967296)")) ==
+              "mesh is not a whole number of at least 0");
+        CHECK(reason(replaced(whole, R"("mesh": 0)", R"("mesh": 0, "scale": [1, "1", 1])")) ==
+              "scale is not a list of numbers");
+        CHECK(reason(replaced(whole, R"("mesh": 0)", R"("mesh": 0, "children": [0.5])")) ==
+              "children is not a list of whole numbers of at least 0");
+        CHECK(reason(replaced(whole, R"("POSITION": 0)", R"("POSITION": true)")) ==
+              "attributes is not a table of whole numbers");
+        CHECK(reason(replaced(whole, R"("attributes")", R"("attribute")")) ==
+              "primitives is not a list of things with attributes");
+        CHECK(reason(replaced(whole, R"("nodes": [{"mesh": 0}])", R"("nodes": {"mesh": 0})")) ==
+              "nodes is not a list of things");
+        CHECK(reason(replaced(whole, R"("type": "VEC3")", R"("type": 3)")) == "type is not a text");
         std::string deep;
         for (int i = 0; i < 100'000; ++i) {
             deep += "[";
@@ -810,9 +828,15 @@ TEST_SUITE("examples_support/gltf_scene") {
                 continue;
             }
             gltf_scene const ours(entry.path());
-            assimp_scene const theirs(entry.path());
+            std::optional<assimp_scene> theirs;
+            try {
+                theirs.emplace(entry.path());
+            } catch (file_error const&) {
+                left_out += "\n  " + name + ": assimp refuses it, we do not";
+                continue;
+            }
             auto const a = ours.objects_at(0);
-            auto const b = theirs.objects_at(0);
+            auto const b = theirs->objects_at(0);
             REQUIRE(a.size() == b.size());
             for (std::size_t i = 0; i < a.size(); ++i) {
                 auto const mine = sorted_triangles(a[i]);
