@@ -107,8 +107,9 @@ public:
         // An image that is narrower than the file's shows its whole width
         auto const widened = source.aspect > aspect ? tangent * source.aspect / aspect : tangent;
         auto const position = glm::vec3(to_world[3]);
-        auto eye = look_at(position, position - glm::normalize(glm::vec3(to_world[2])), 2 * std::atan(widened),
-                           glm::normalize(glm::vec3(to_world[1])));
+        auto const reach = std::max(1.0f, glm::length(position)); // far from the middle of the world 1 may be nothing
+        auto const target = position - reach * glm::normalize(glm::vec3(to_world[2]));
+        auto eye = look_at(position, target, 2 * std::atan(widened), glm::normalize(glm::vec3(to_world[1])));
         eye.near_distance = near_distance;
         return eye;
     }
