@@ -181,6 +181,9 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
         make_folder(options.out);
         source = load_guidance(options, model->scale(), model->scale() * model->grid_divisor(), loop);
         source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
+        for (auto const& note : source.notes) {
+            std::cerr << "note: " << note << "\n";
+        }
         auto const frame_count = source.guidance.uv.frame_count();
         options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
         options.settings.noise.rays = source.rays;
@@ -203,9 +206,6 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
         return fail(program, 2, error);
     } catch (std::exception const& error) {
         return fail(program, 1, error);
-    }
-    for (auto const& note : source.notes) {
-        std::cerr << "note: " << note << "\n";
     }
     try {
         run(options, source, *model, earlier, loop, total);

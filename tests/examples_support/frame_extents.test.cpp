@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The extents of frames over maps of any size.
 #include <examples/support/frame_extents.hpp>
 
 #include <doctest/doctest.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Frames as PNG of 8 and 16 bits and as EXR, with alpha.
 #include <examples/support/exr_file.hpp>
 #include <examples/support/frame_file.hpp>
 #include <examples/support/pictures.hpp>

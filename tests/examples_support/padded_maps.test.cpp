@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Maps in larger and smaller extents.
 #include <examples/support/padded_maps.hpp>
 
 #include <doctest/doctest.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Frames handed to a program that encodes them.
 #include <examples/support/video_file.hpp>
 
 #include "../support/scratch_folder.hpp"
