@@ -158,9 +158,11 @@ private:
                              ", expected one of " + std::to_string(document_.model.cameras.size()));
         }
         auto const& source = document_.model.cameras[static_cast<std::size_t>(number)];
-        lenses_.push_back({source.name, source.type != "perspective"});
-        eyes_.push_back(
-            {node, static_cast<float>(source.perspective.yfov), static_cast<float>(source.perspective.aspectRatio)});
+        auto const& perspective = source.perspective;
+        auto const is_aspect = perspective.aspectRatio > 1e-3 && perspective.aspectRatio < 1e3;
+        auto const aspect = is_aspect ? static_cast<float>(perspective.aspectRatio) : 0.0f;
+        lenses_.push_back({source.name, source.type != "perspective", aspect});
+        eyes_.push_back({node, static_cast<float>(perspective.yfov), aspect});
     }
 
     void add_mesh(std::size_t node, gltf_accessors& accessors, model_assembly const& assembly) {
