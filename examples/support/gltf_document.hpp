@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A file of glTF 2.0, as text or binary, with its buffers; pictures and materials are left out.
+// A file of glTF 2.0, as text or binary, with its buffers; pictures are left out.
 #pragma once
 
 #include "gltf_values.hpp"
@@ -28,7 +28,7 @@ namespace genrender::examples {
 /// What a file of glTF 2.0 says, and its buffers' bytes.
 struct gltf_document {
     std::string path;
-    tinygltf::Model model;            ///< without images, textures, materials and extras
+    tinygltf::Model model;            ///< without images, textures and extras
     std::vector<std::string> notes{}; ///< sentences
 
     /// Throws file_error that begins with the path: `PATH: what`.
@@ -106,7 +106,7 @@ inline gltf_parts gltf_parts_of(std::string bytes) {
 /// go down by recursion.
 inline nlohmann::json gltf_json(std::string const& text) {
     constexpr int most_levels = 64;
-    static constexpr std::array left_out{"images", "textures", "materials", "extensions"};
+    static constexpr std::array left_out{"images", "textures", "extensions"};
     auto const keep = [](int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
         if (depth > most_levels) {
             throw file_error("it nests more than " + std::to_string(most_levels) + " levels");
@@ -129,11 +129,16 @@ inline bool is_gltf_look(std::string_view extension) {
     return std::any_of(families.begin(), families.end(), [&](auto family) { return extension.starts_with(family); });
 }
 
-/// Throws file_error by name at an extension that a reader must know and this one does not.
+[[noreturn]] inline void refuse_gltf_compression(gltf_document const& document, std::string const& extension) {
+    document.refuse("its meshes are compressed by " + extension + ", expected a file exported without it");
+}
+
+/// Throws file_error by name at an extension that a reader must know and this one does not, said to be required or not.
 inline void check_gltf_extensions(nlohmann::json const& json, gltf_document& document) {
+    std::string const draco = "KHR_draco_mesh_compression";
     for (std::string const extension : json.value("extensionsRequired", nlohmann::json::array())) {
-        if (extension == "KHR_draco_mesh_compression" || extension.find("meshopt") != std::string::npos) {
-            document.refuse("its meshes are compressed by " + extension + ", expected a file exported without it");
+        if (extension == draco || extension.find("meshopt") != std::string::npos) {
+            refuse_gltf_compression(document, extension);
         }
         if (extension != "KHR_mesh_quantization" && extension != "EXT_mesh_gpu_instancing" &&
             !is_gltf_look(extension)) {
@@ -141,7 +146,26 @@ inline void check_gltf_extensions(nlohmann::json const& json, gltf_document& doc
         }
         if (extension == "KHR_texture_transform") {
             document.notes.push_back(
-                "The file places its textures by KHR_texture_transform; UVs are left as they are.");
+                "The file places textures by KHR_texture_transform; UVs of floats stay as they are.");
+        }
+    }
+    // Compressed without anything to fall back on
+    auto const accessors = json.value("accessors", nlohmann::json::array());
+    for (auto const& mesh : json.value("meshes", nlohmann::json::array())) {
+        for (auto const& primitive : mesh.value("primitives", nlohmann::json::array())) {
+            auto const position = primitive.at("attributes").value("POSITION", accessors.size());
+            if (primitive.value("extensions", nlohmann::json::object()).contains(draco) &&
+                position < accessors.size() && !accessors[position].contains("bufferView")) {
+                refuse_gltf_compression(document, draco);
+            }
+        }
+    }
+    for (auto const& buffer : json.value("buffers", nlohmann::json::array())) {
+        auto const extensions = buffer.value("extensions", nlohmann::json::object());
+        for (auto const& extension : extensions.items()) {
+            if (extension.key().find("meshopt") != std::string::npos && !buffer.contains("uri")) {
+                refuse_gltf_compression(document, extension.key());
+            }
         }
     }
 }
@@ -208,8 +232,8 @@ inline gltf_document read_gltf(std::filesystem::path const& path) {
         detail::refuse_gltf(document.path, failure.what());
     }
     try {
-        detail::check_gltf_extensions(json, document);
         check_gltf_values(json);
+        detail::check_gltf_extensions(json, document);
         auto const buffers = json.value("buffers", nlohmann::json::array());
         json.erase("buffers");
         auto const text = json.dump();

@@ -9,13 +9,12 @@
 
 #include <genrender/scene/skinning.hpp>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -46,6 +45,36 @@ inline std::vector<glm::uvec3> gltf_triangles(std::vector<std::uint32_t> const& 
         }
     }
     return triangles;
+}
+
+/// What takes UVs of integers to the texture.
+struct gltf_uv_range {
+    glm::vec2 offset{0};
+    glm::vec2 scale{1};
+};
+
+/// That of a primitive: files of quantised UVs say the range by KHR_texture_transform of their colour's texture.
+inline gltf_uv_range gltf_uv_range_of(gltf_document const& document, tinygltf::Primitive const& primitive) {
+    gltf_uv_range range;
+    auto const& materials = document.model.materials;
+    if (primitive.material < 0 || static_cast<std::size_t>(primitive.material) >= materials.size()) {
+        return range;
+    }
+    auto const& texture = materials[static_cast<std::size_t>(primitive.material)].pbrMetallicRoughness.baseColorTexture;
+    auto const found = texture.extensions.find("KHR_texture_transform");
+    if (found == texture.extensions.end()) {
+        return range;
+    }
+    auto const read = [&](char const* name, glm::vec2& pair) {
+        if (found->second.Has(name) && found->second.Get(name).ArrayLen() == 2) {
+            for (int i = 0; i < 2; ++i) {
+                pair[i] = static_cast<float>(found->second.Get(name).Get(i).GetNumberAsDouble());
+            }
+        }
+    };
+    read("offset", range.offset);
+    read("scale", range.scale);
+    return range;
 }
 
 } // namespace detail
@@ -97,8 +126,14 @@ inline model_arrays gltf_arrays(gltf_document const& document, gltf_accessors& a
     if (assembly.uvs == model_uvs::from_file && attribute(uv_name) >= 0) {
         auto const uvs = accessors.floats(attribute(uv_name), TINYGLTF_TYPE_VEC2, uv_name + " of " + what);
         require_each(uvs.count, uv_name);
+        // Those of floats stay: a texture that is tiled or moved does not move what the surface's points are called
+        auto const number = static_cast<std::size_t>(attribute(uv_name));
+        auto const range = document.model.accessors[number].componentType == TINYGLTF_COMPONENT_TYPE_FLOAT
+                               ? detail::gltf_uv_range()
+                               : detail::gltf_uv_range_of(document, primitive);
         for (std::size_t i = 0; i < uvs.count; ++i) {
-            arrays.surface.uvs.push_back({uvs.values[2 * i], uvs.values[2 * i + 1]});
+            arrays.surface.uvs.push_back(range.offset +
+                                         range.scale * glm::vec2(uvs.values[2 * i], uvs.values[2 * i + 1]));
         }
     }
 

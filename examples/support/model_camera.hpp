@@ -66,7 +66,8 @@ inline camera fit_points(std::span<glm::vec3 const> points, glm::vec3 direction,
     auto const Y = (top - bottom) / 2;
     auto const Z = std::min(-(right + left) / (2 * t_x), -(top + bottom) / (2 * t_y));
     auto const position = X * axes.right + Y * axes.up + Z * axes.forward;
-    auto eye = look_at(position, position + axes.forward, vertical_fov);
+    auto const reach = std::max(1.0f, glm::length(position)); // far from the middle of the world 1 may be nothing
+    auto eye = look_at(position, position + reach * axes.forward, vertical_fov);
     eye.near_distance = std::max((nearest - Z) / 2, 1e-4f * bounds_of(points).radius());
     return eye;
 }

@@ -134,6 +134,15 @@ private:
         if (!cameras_.empty()) {
             return;
         }
+        try {
+            fit_cameras(is_animated, points, options);
+        } catch (value_error const& reason) { // of coordinates alone, as the options have been looked at
+            throw file_error(path_ + ": no camera can see it (" + reason.what() +
+                             "), expected coordinates that numbers of 32 bits tell apart");
+        }
+    }
+
+    void fit_cameras(bool is_animated, std::span<glm::vec3 const> points, model_options const& options) {
         if (options.view == model_view::still ||
             ((options.view == model_view::automatic || options.view == model_view::fitted) && is_animated)) {
             cameras_.assign(frame_count(), fit_points(points, view_direction(options.azimuth, options.elevation),

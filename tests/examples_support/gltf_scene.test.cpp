@@ -575,15 +575,48 @@ TEST_SUITE("examples_support/gltf_scene") {
     TEST_CASE("extensions of looks are let through and compression is refused by name") {
         scratch_folder const folder;
         auto file = one_triangle();
-        file.more = R"(, "extensionsRequired": ["KHR_texture_transform", "KHR_materials_unlit"])";
-        CHECK(scene_of(folder, file).notes() ==
-              std::vector<std::string>{
-                  "The file places its textures by KHR_texture_transform; UVs are left as they are."});
+        file.more = R"(, "extensionsRequired": ["KHR_materials_unlit", "KHR_texture_basisu"])";
+        CHECK(scene_of(folder, file).objects().size() == 1);
         for (std::string const name :
              {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"}) {
             file.more = R"(, "extensionsRequired": [")" + name + R"("])";
             CHECK(refusal_of(folder, file.text()) ==
                   "its meshes are compressed by " + name + ", expected a file exported without it");
+        }
+    }
+
+    TEST_CASE("compressed meshes are refused by name where the file does not call the extension required") {
+        scratch_folder const folder;
+        auto const whole = one_triangle().text();
+        auto const draco = replaced(whole, R"("primitives": [{)",
+                                    R"("primitives": [{"extensions": {"KHR_draco_mesh_compression": {}}, )");
+        CHECK(refusal_of(folder, draco) == "no error"); // the file has the vertices as well
+        CHECK(refusal_of(folder, replaced(draco, R"("bufferView": 0, )", "")) ==
+              "its meshes are compressed by KHR_draco_mesh_compression, expected a file exported without it");
+        CHECK(refusal_of(folder, replaced(whole, R"("buffers": [)",
+                                          R"("buffers": [{"byteLength": 9, "extensions": {"EXT_meshopt_compression":
+                                          {"fallback": true}}}, )")) ==
+              "its meshes are compressed by EXT_meshopt_compression, expected a file exported without it");
+    }
+
+    TEST_CASE("KHR_texture_transform says the range of UVs of integers and leaves those of floats alone") {
+        scratch_folder const folder;
+        for (auto const is_float : {false, true}) {
+            gltf_file file;
+            auto const uvs = is_float ? file.add("VEC2", {0, 0, 0.25f, 0, 0, 0.25f})
+                                      : file.add_integers("VEC2", {0, 0, 4095, 0, 0, 2048}); // not normalised
+            file = one_triangle(R"(, "TEXCOORD_0": )" + uvs, R"(, "material": 0)", file);
+            file.more = R"(, "extensionsRequired": ["KHR_texture_transform"], "materials": [{"pbrMetallicRoughness":
+                {"baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0],
+                "scale": [0.0001220703125, 0.000244140625]}}}}}])";
+            auto const scene = scene_of(folder, file);
+            CHECK(scene.notes() ==
+                  std::vector<std::string>{
+                      "The file places textures by KHR_texture_transform; UVs of floats stay as they are."});
+            auto const object = scene.objects_at(0).at(0);
+            CHECK(object.surface->uvs[0].x == (is_float ? 0.0f : 0.5f));
+            CHECK(object.surface->uvs[1].x == doctest::Approx(is_float ? 0.25 : 0.5 + 4095.0 / 8192));
+            CHECK(object.surface->uvs[2].y == doctest::Approx(is_float ? 0.25 : 0.5));
         }
     }
 

@@ -297,6 +297,20 @@ TEST_SUITE("examples_support/model_file") {
                              file_error);
     }
 
+    TEST_CASE("a model far from the middle of the world is seen and one that is too large for numbers is refused") {
+        scratch_folder const folder;
+        auto file = triangle_file();
+        file.nodes = R"({"name": "n", "mesh": 0, "translation": [5e7, 0, 4e7], "scale": [1000, 1000, 1000]})";
+        for (auto const view : {model_view::still, model_view::orbiting}) {
+            auto const model = load(folder, file, {.time = {.frames = 2}, .view = view});
+            auto const eye = position_of(model.frame({0}).camera);
+            CHECK(glm::distance(eye, {5e7f, 0, 4e7f}) < 1e4f);
+        }
+        file.nodes = R"({"name": "n", "mesh": 0, "scale": [3e38, 3e38, 3e38]})";
+        auto const path = folder.write("large.gltf", file.text());
+        CHECK(refusal(path).rfind(path.string() + ": no camera can see it (", 0) == 0);
+    }
+
     TEST_CASE("z can be told to be up") {
         scratch_folder const folder;
         auto file = triangle_file();
