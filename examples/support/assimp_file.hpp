@@ -56,7 +56,8 @@ inline bool is_fbx(aiScene const& scene) {
     return scene.mMetaData != nullptr && scene.mMetaData->Get("FrameRate", number);
 }
 
-/// Reads and prepares the file; the reason why there is nothing, or an empty text.
+/// Reads and prepares the file, without the meshes that assimp would build around the joints of a lone skeleton; the
+/// reason why there is nothing, or an empty text.
 inline std::string read_with(Assimp::Importer& importer, std::string const& path) {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     try {
@@ -84,14 +85,6 @@ inline unsigned patience_for(std::filesystem::path const& path) {
     std::error_code unknown;
     auto const bytes = std::filesystem::file_size(path, unknown);
     return 60 + (unknown ? 0 : static_cast<unsigned>(bytes >> 20) * 10);
-}
-
-/// A mesh that assimp builds around the joints of a skeleton, to have something to show.
-inline bool is_stand_in(aiScene const& scene, aiMesh const& mesh) {
-    aiString material;
-    return mesh.mMaterialIndex < scene.mNumMaterials &&
-           scene.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, material) == aiReturn_SUCCESS &&
-           std::string("SkeletonMaterial") == material.C_Str();
 }
 
 /// How many blend shapes of the meshes at a node and its children no key moves. Keys name the node or the mesh.
@@ -153,11 +146,7 @@ inline assimp_file read_assimp_file(std::filesystem::path const& path) {
     if (scene == nullptr || scene->mRootNode == nullptr) {
         refuse(reason);
     }
-    auto stand_ins = 0u;
-    for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-        stand_ins += detail::is_stand_in(*scene, *scene->mMeshes[i]);
-    }
-    if (stand_ins == scene->mNumMeshes) {
+    if (scene->mNumMeshes == 0) {
         throw file_error(name + ": holds no mesh, only " + (scene->mNumAnimations > 0 ? "a skeleton" : "nodes") +
                          ", expected the surface as well");
     }

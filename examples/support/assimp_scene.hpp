@@ -116,7 +116,12 @@ private:
         for (unsigned i = 0; i < scene_->mNumAnimations; ++i) {
             auto const& source = *scene_->mAnimations[i];
             auto const [begin, end] = key_times(source);
-            model_take take{source.mName.C_Str(), begin / ticks_per_second(source), end / ticks_per_second(source), {}};
+            // Some programs write an empty take into every file
+            auto const last = moves_something(source) ? end : begin;
+            model_take take{source.mName.length > 0 ? source.mName.C_Str() : "unnamed",
+                            begin / ticks_per_second(source),
+                            last / ticks_per_second(source),
+                            {}};
             for (unsigned k = 0; k < source.mNumChannels; ++k) {
                 take.targets.push_back(source.mChannels[k]->mNodeName.C_Str());
             }

@@ -155,6 +155,34 @@ inline std::pair<double, double> key_times(aiAnimation const& animation) {
     return end > begin ? std::pair{begin, end} : std::pair{0.0, std::max(animation.mDuration, 0.0)};
 }
 
+/// Whether a key of the animation differs from the first of its channel.
+inline bool moves_something(aiAnimation const& animation) {
+    auto const varies = [](auto const* keys, unsigned count) {
+        return std::any_of(keys, keys + count, [&](auto const& key) { return key.mValue != keys[0].mValue; });
+    };
+    for (unsigned i = 0; i < animation.mNumChannels; ++i) {
+        auto const& channel = *animation.mChannels[i];
+        if (varies(channel.mPositionKeys, channel.mNumPositionKeys) ||
+            varies(channel.mRotationKeys, channel.mNumRotationKeys) ||
+            varies(channel.mScalingKeys, channel.mNumScalingKeys)) {
+            return true;
+        }
+    }
+    for (unsigned i = 0; i < animation.mNumMorphMeshChannels; ++i) {
+        auto const& channel = *animation.mMorphMeshChannels[i];
+        for (unsigned k = 1; k < channel.mNumKeys; ++k) {
+            auto const& first = channel.mKeys[0];
+            auto const& key = channel.mKeys[k];
+            auto const count = first.mNumValuesAndWeights;
+            if (key.mNumValuesAndWeights != count || !std::equal(key.mValues, key.mValues + count, first.mValues) ||
+                !std::equal(key.mWeights, key.mWeights + count, first.mWeights)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 /// All nodes of a scene, parents before children. Refers to the scene, which must outlive it.
 class model_nodes {
 public:

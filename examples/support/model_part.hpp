@@ -136,6 +136,7 @@ private:
             surface.uvs.assign(surface.positions.size(), {});
         }
         report_.has_made_uvs = !is_uv_usable;
+        report_.asked_for_uvs = uvs == model_uvs::atlas;
         return surface;
     }
 
