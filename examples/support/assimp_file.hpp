@@ -3,6 +3,7 @@
 #pragma once
 
 #include "child_trial.hpp"
+#include "fbx_file.hpp"
 
 #include <genrender/core/error.hpp>
 
@@ -12,12 +13,17 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -56,13 +62,28 @@ inline bool is_fbx(aiScene const& scene) {
     return scene.mMetaData != nullptr && scene.mMetaData->Get("FrameRate", number);
 }
 
-/// Reads and prepares the file, without the meshes that assimp would build around the joints of a lone skeleton; the
-/// reason why there is nothing, or an empty text.
-inline std::string read_with(Assimp::Importer& importer, std::string const& path) {
+/// The bytes to read in place of an FBX file whose curves are not straight lines between keys, the only ones that
+/// assimp knows.
+inline std::optional<std::string> straight_fbx(std::filesystem::path const& path) {
+    auto extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::ifstream stream(path, std::ios::binary);
+    if (extension != ".fbx" || !stream) {
+        return std::nullopt;
+    }
+    return with_straight_curves(std::string{std::istreambuf_iterator<char>(stream), {}});
+}
+
+/// Reads and prepares the file, or the bytes in its place, without the meshes that assimp would build around the
+/// joints of a lone skeleton; the reason why there is nothing, or an empty text.
+inline std::string read_with(Assimp::Importer& importer, std::string const& path,
+                             std::optional<std::string> const& instead) {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     try {
         // Checked later, as a check would refuse a file without meshes in words that say nothing to an artist
-        auto const* scene = importer.ReadFile(path, 0);
+        auto const* scene = instead ? importer.ReadFileFromMemory(instead->data(), instead->size(), 0, "fbx")
+                                    : importer.ReadFile(path, 0);
         if (scene != nullptr && scene->mNumMeshes > 0) {
             importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_LimitBoneWeights | aiProcess_FlipUVs |
                                          aiProcess_ValidateDataStructure);
@@ -130,10 +151,11 @@ inline assimp_file read_assimp_file(std::filesystem::path const& path) {
         throw file_error(name + ": cannot be read as a model (" + reason +
                          "), expected a whole file that assimp knows");
     };
+    auto const instead = detail::straight_fbx(path);
     auto const failure = failure_in_child(
         [&] {
             Assimp::Importer importer;
-            detail::read_with(importer, name);
+            detail::read_with(importer, name, instead);
         },
         detail::patience_for(path));
     if (failure) {
@@ -141,7 +163,7 @@ inline assimp_file read_assimp_file(std::filesystem::path const& path) {
     }
 
     Assimp::Importer importer;
-    auto const reason = detail::read_with(importer, name);
+    auto const reason = detail::read_with(importer, name, instead);
     std::shared_ptr<aiScene> const scene(importer.GetOrphanedScene());
     if (scene == nullptr || scene->mRootNode == nullptr) {
         refuse(reason);
