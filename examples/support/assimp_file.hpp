@@ -62,17 +62,13 @@ inline bool is_fbx(aiScene const& scene) {
     return scene.mMetaData != nullptr && scene.mMetaData->Get("FrameRate", number);
 }
 
-/// The bytes to read in place of an FBX file whose curves are not straight lines between keys, the only ones that
-/// assimp knows.
-inline std::optional<std::string> straight_fbx(std::filesystem::path const& path) {
+/// The bytes of a file that is called one of FBX; nothing of any other.
+inline std::string fbx_bytes(std::filesystem::path const& path) {
     auto extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    std::ifstream stream(path, std::ios::binary);
-    if (extension != ".fbx" || !stream) {
-        return std::nullopt;
-    }
-    return with_straight_curves(std::string{std::istreambuf_iterator<char>(stream), {}});
+    std::ifstream stream(extension == ".fbx" ? path : std::filesystem::path(), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// Reads and prepares the file, or the bytes in its place, without the meshes that assimp would build around the
@@ -151,7 +147,10 @@ inline assimp_file read_assimp_file(std::filesystem::path const& path) {
         throw file_error(name + ": cannot be read as a model (" + reason +
                          "), expected a whole file that assimp knows");
     };
-    auto const instead = detail::straight_fbx(path);
+    auto bytes = detail::fbx_bytes(path);
+    auto const has_cache = bytes.find("VertexCacheDeformer") != bytes.npos;
+    auto const instead = with_straight_curves(bytes); // assimp knows no others
+    bytes = {};
     auto const failure = failure_in_child(
         [&] {
             Assimp::Importer importer;
@@ -174,6 +173,9 @@ inline assimp_file read_assimp_file(std::filesystem::path const& path) {
     }
 
     assimp_file file{scene, {}};
+    if (has_cache) {
+        file.notes.push_back("The file names a vertex cache, which is not read: what that moves stands still.");
+    }
     if (detail::is_fbx(*scene)) {
         if (auto const still = detail::rest_blend_shapes(*scene); still > 0) {
             file.notes.push_back(std::to_string(still) + " blend shapes without keys stay at 0: assimp does not tell "
