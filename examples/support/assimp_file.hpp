@@ -168,8 +168,9 @@ inline assimp_file read_assimp_file(std::filesystem::path const& path) {
         refuse(reason);
     }
     if (scene->mNumMeshes == 0) {
-        throw file_error(name + ": holds no mesh, only " + (scene->mNumAnimations > 0 ? "a skeleton" : "nodes") +
-                         ", expected the surface as well");
+        throw file_error(name + (scene->mNumAnimations > 0
+                                     ? ": holds no mesh, only a skeleton, expected the surface as well"
+                                     : ": holds no triangles, expected a mesh at a node"));
     }
 
     assimp_file file{scene, {}};
