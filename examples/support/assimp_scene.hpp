@@ -55,7 +55,7 @@ public:
         list_takes();
         for (unsigned i = 0; i < scene_->mNumCameras; ++i) {
             auto const& source = *scene_->mCameras[i];
-            lenses_.push_back({source.mName.C_Str(), source.mOrthographicWidth > 0});
+            lenses_.push_back({source.mName.C_Str(), source.mOrthographicWidth > 0, source.mAspect});
         }
         nodes_.emplace(*scene_, to_y_up(assembly.up));
         add_parts(assembly);

@@ -32,16 +32,17 @@ enum class model_view {
     automatic, ///< orbiting around a rigid model; an animated one by the file's camera if that sees it, else still
     file,      ///< a camera of the file, whatever it sees
     still,     ///< one camera for all frames, from `azimuth` and `elevation`, that sees every frame
-    orbiting   ///< one turn around the model, which starts at `azimuth`
+    orbiting,  ///< one turn around the model, which starts at `azimuth`
+    fitted     ///< orbiting around a rigid model, still before an animated one
 };
 
 /// How a model file becomes an animation.
 struct model_options {
     model_time_options time{};
-    float aspect = 1;          ///< width / height of the image that cameras are fitted to
-    float vertical_fov = 0.6f; ///< of cameras that are not the file's, radians
-    float azimuth = 0.5f;      ///< 0 looks from +z, pi / 2 from +x; radians
-    float elevation = 0.3f;    ///< above the ground, radians, in (-pi / 2, pi / 2)
+    std::optional<float> aspect{}; ///< width / height of the image; without a value the file's camera's, else 1
+    float vertical_fov = 0.6f;     ///< of cameras that are not the file's, radians
+    float azimuth = 0.5f;          ///< 0 looks from +z, pi / 2 from +x; radians
+    float elevation = 0.3f;        ///< above the ground, radians, in (-pi / 2, pi / 2)
     model_view view = model_view::automatic;
     std::string camera{}; ///< name of the file's camera for `file`; empty: the first that is not orthographic
     model_up up = model_up::from_file;
@@ -53,6 +54,9 @@ struct model_options {
 class model_animation {
 public:
     std::size_t frame_count() const { return times_.seconds.size(); }
+
+    /// Width / height of the image.
+    float aspect() const { return aspect_; }
 
     /// Frames a second of what is shown: those of the options, else what plays the chosen times in real time.
     double frames_per_second() const { return times_.frames_per_second; }
@@ -82,8 +86,9 @@ private:
     }
 
     void choose_cameras(bool is_animated, model_options const& options) {
-        require_value(options.aspect > 0 && std::isfinite(options.aspect), "load_model", "options.aspect",
-                      options.aspect, "width / height above 0");
+        aspect_ = options.aspect.value_or(1);
+        require_value(aspect_ > 0 && std::isfinite(aspect_), "load_model", "options.aspect", aspect_,
+                      "width / height above 0");
         require_value(options.vertical_fov > 0 && options.vertical_fov < 3.1f, "load_model", "options.vertical_fov",
                       options.vertical_fov, "an angle between 0 and pi");
         require_value(std::abs(options.elevation) < 1.57f, "load_model", "options.elevation", options.elevation,
@@ -117,13 +122,14 @@ private:
         if (!cameras_.empty()) {
             return;
         }
-        if (options.view == model_view::still || (options.view == model_view::automatic && is_animated)) {
+        if (options.view == model_view::still ||
+            ((options.view == model_view::automatic || options.view == model_view::fitted) && is_animated)) {
             cameras_.assign(frame_count(), fit_points(points, view_direction(options.azimuth, options.elevation),
-                                                      options.vertical_fov, options.aspect));
+                                                      options.vertical_fov, aspect_));
             return;
         }
-        cameras_ = orbit_cameras(points, options.azimuth, options.elevation, options.vertical_fov, options.aspect,
-                                 frame_count());
+        cameras_ =
+            orbit_cameras(points, options.azimuth, options.elevation, options.vertical_fov, aspect_, frame_count());
     }
 
     /// The file's camera of that name, else the first that can be rendered from.
@@ -155,23 +161,26 @@ private:
         if (scene_->lenses()[lens].is_orthographic) {
             return leave(" is orthographic, and cannot be rendered from.");
         }
+        auto const of_file = scene_->lenses()[lens].aspect;
+        auto const aspect = options.aspect.value_or(of_file > 0 ? of_file : 1);
         try {
             for (auto const time : times_.seconds) {
-                cameras_.push_back(scene_->eye_at(lens, time, options.aspect, 1e-3f * box.radius()));
+                cameras_.push_back(scene_->eye_at(lens, time, aspect, 1e-3f * box.radius()));
             }
         } catch (value_error const& reason) {
             return leave(std::string(" cannot be used: ") + reason.what() + ".");
         }
-        auto const percent = 100 * count_seen(cameras_.front(), points, options.aspect) / points.size();
+        auto const percent = 100 * count_seen(cameras_.front(), points, aspect) / points.size();
         if (options.view == model_view::automatic && percent < 50) {
             return leave(" is not used: it sees " + std::to_string(percent) + " % of the model.");
         }
-        auto const filled = filled_share(cameras_.front(), points, options.aspect);
+        auto const filled = filled_share(cameras_.front(), points, aspect);
         if (options.view == model_view::automatic && filled < least_filled_share) {
             char share[16];
             std::snprintf(share, sizeof share, "%.2g", 100 * filled);
             return leave(std::string(" is not used: the model fills ") + share + " % of its picture.");
         }
+        aspect_ = aspect;
         report_.notes.push_back("Looks through the file's camera" + (name.empty() ? "" : " " + name) + ", which sees " +
                                 std::to_string(percent) + " % of the model.");
         return true;
@@ -181,6 +190,7 @@ private:
     std::shared_ptr<model_scene> scene_; ///< as it was read and told to play; nobody changes it later
     model_times times_;
     std::vector<camera> cameras_; ///< of each frame
+    float aspect_ = 1;
     model_report report_;
 };
 

@@ -26,6 +26,7 @@ struct model_take {
 struct model_lens {
     std::string name;
     bool is_orthographic = false; ///< it has no eye, so it cannot be rendered from
+    float aspect = 0;             ///< width / height of its picture; 0 if the file does not say
 };
 
 /// A model file, read. Everything is in one world with y upwards; v is 0 at the texture's top.

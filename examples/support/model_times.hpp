@@ -27,6 +27,7 @@ struct model_time_options {
     /// the file's rate and then at most `most_frames`.
     std::size_t frames = 16;
     std::size_t most_frames = 48;
+    std::size_t frames_at_rest = 0; ///< instead of 0 frames where nothing moves
     /// With a value, an animation that is over starts again.
     std::optional<double> frames_per_second{};
     /// First and last frame of the range on the file's time line, whose frame f is at f / frames_per_second of the
@@ -121,9 +122,10 @@ inline model_times choose_times(model_scene const& scene, std::span<std::size_t 
     model_times times;
     auto const rate = scene.frames_per_second();
     if (playing.empty() && !(options.start && options.end)) {
-        require_value(options.frames > 0, "load_model", "options.time.frames", options.frames,
+        auto const frames = options.frames > 0 ? options.frames : options.frames_at_rest;
+        require_value(frames > 0, "load_model", "options.time.frames", frames,
                       "at least 1 where the file has no animation");
-        times.seconds.assign(options.frames, 0);
+        times.seconds.assign(frames, 0);
         times.frames_per_second = fps > 0 ? fps : rate;
         return times;
     }
