@@ -165,6 +165,45 @@ TEST_SUITE("examples_support/assimp_scene") {
         CHECK(still.takes().at(0).end == still.takes()[0].begin); // its keys move nothing
     }
 
+    TEST_CASE("an FBX node that is turned before its rotation moves without being moved twice") {
+        genrender::tests::scratch_folder const folder;
+        constexpr std::int64_t second = 46186158000;
+        genrender::tests::fbx_motion motion{{0, second}, {0, 8}, {4, 4}, {0, 0, 0, 0, 0, 0, 0, 0}};
+        motion.is_turned = true;
+        assimp_scene scene(folder.write("turned.fbx", motion.bytes(7400, true)));
+        auto const rest = scene.objects_at(0).at(0).positions;
+        CHECK(glm::distance(rest.at(0), {5, 6, 7}) < 1e-4f);
+        CHECK(glm::distance(rest.at(1), {5, 7, 7}) < 1e-4f); // a quarter turn takes x to y
+        auto const moved = points_at(scene, 12);
+        CHECK(glm::distance(moved.at(0), {4, 6, 7}) < 1e-4f);
+        CHECK(glm::distance(moved.at(1), {4, 7, 7}) < 1e-4f);
+        CHECK(glm::distance(moved.at(2), {3, 6, 7}) < 1e-4f);
+    }
+
+    TEST_CASE("each of several takes of an FBX file can play") {
+        genrender::tests::scratch_folder const folder;
+        constexpr std::int64_t second = 46186158000;
+        std::vector<float> const none(8);
+        genrender::tests::fbx_motion motion{{0, second}, {0, 8}, {4, 4}, none, "Walk"};
+        motion.more = {{{second, 3 * second}, {4, 2}, {4, 4}, none, "Run"},
+                       {{0, second}, {0, 0}, {4, 4}, none, "Empty"}};
+        assimp_scene scene(folder.write("takes.fbx", motion.text()));
+        REQUIRE(scene.takes().size() == 3);
+        CHECK(scene.takes()[0].name == "Walk");
+        CHECK(scene.takes()[2].end == scene.takes()[2].begin);
+        CHECK(choose_takes(scene.takes(), "") ==
+              std::vector<std::size_t>{1}); // the longest of those that move something
+        auto const x_at = [&](std::string const& take, double seconds) {
+            scene.play(choose_takes(scene.takes(), take));
+            return scene.objects_at(seconds).at(0).positions.at(0).x;
+        };
+        CHECK(x_at("Walk", 0.5) == doctest::Approx(4));
+        CHECK(x_at("Run", scene.takes()[1].begin) == doctest::Approx(4));
+        CHECK(x_at("Run", scene.takes()[1].end) == doctest::Approx(2));
+        CHECK(x_at("Empty", 0.5) == doctest::Approx(0));
+        CHECK(scene.takes()[1].end - scene.takes()[1].begin == doctest::Approx(2));
+    }
+
     TEST_CASE("FBX files without animation or with straight curves look as assimp has them") {
         std::filesystem::path const models("/usr/share/assimp/models/FBX");
         if (!std::filesystem::exists(models)) {

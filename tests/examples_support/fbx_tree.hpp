@@ -118,12 +118,16 @@ private:
     }
 };
 
-/// A triangle whose x follows a curve of these keys, FBX's ticks, with a run of attributes for each key.
+/// A triangle (0, 0, 0), (1, 0, 0), (0, 1, 0) whose x follows a curve of these keys, FBX's ticks, with a run of
+/// attributes for each key.
 struct fbx_motion {
     std::vector<std::int64_t> times;
     std::vector<float> values;
     std::vector<std::int32_t> flags;
     std::vector<float> data; ///< four a key
+    std::string take = "Take";
+    std::vector<fbx_motion> more{}; ///< further takes of the file
+    bool is_turned = false; ///< by a quarter around z before its own rotation, and at (5, 6, 7) without the motion
 
     std::vector<fbx_tree> records(std::int32_t version) const {
         using doubles = std::vector<double>;
@@ -132,7 +136,7 @@ struct fbx_motion {
         auto const link = [&](char const* kind, std::int64_t from, std::int64_t to) {
             return fbx_tree{"C", {std::string(kind), id(from), id(to)}, {}};
         };
-        auto to_property = [&](std::int64_t from, std::int64_t to, char const* property) {
+        auto const to_property = [&](std::int64_t from, std::int64_t to, char const* property) {
             auto made = link("OP", from, to);
             made.properties.emplace_back(std::string(property));
             return made;
@@ -141,31 +145,60 @@ struct fbx_motion {
                                 std::vector<fbx_tree> within) {
             return fbx_tree{type, {id(number), std::string(name), std::string(kind)}, std::move(within)};
         };
-        whole const runs(times.size(), 1);
+        auto const vector = [](char const* name, char const* type, double x, double y, double z) {
+            return fbx_tree{"P", {std::string(name), std::string(type), std::string(), std::string("A"), x, y, z}, {}};
+        };
         auto const rate = fbx_tree{
             "P", {std::string("TimeMode"), std::string("enum"), std::string(), std::string(), std::int32_t{11}}, {}};
+        std::vector<fbx_tree> model{{"Version", {std::int32_t{232}}, {}}};
+        if (is_turned) {
+            model.push_back(
+                {"Properties70",
+                 {},
+                 {vector("PreRotation", "Vector3D", 0, 0, 90), vector("Lcl Translation", "Lcl Translation", 5, 6, 7)}});
+        }
+        std::vector<fbx_tree> objects{object("Geometry", 2, "Geometry::thing", "Mesh",
+                                             {{"Vertices", {doubles{0, 0, 0, 1, 0, 0, 0, 1, 0}}, {}},
+                                              {"PolygonVertexIndex", {whole{0, 1, -3}}, {}}}),
+                                      object("Model", 1, "Model::thing", "Mesh", model)};
+        std::vector<fbx_tree> links{link("OO", 1, 0), link("OO", 2, 1)};
+        std::int64_t first = 10;
+        auto const add = [&](fbx_motion const& motion) {
+            objects.push_back(
+                object("AnimationStack", first, ("AnimStack::" + motion.take).c_str(), "", {{"Properties70", {}, {}}}));
+            objects.push_back(object("AnimationLayer", first + 1, "AnimLayer::Layer", "", {{"Properties70", {}, {}}}));
+            // Where the take moves nothing the properties of its node hold
+            objects.push_back(
+                object("AnimationCurveNode", first + 2, "AnimCurveNode::T", "",
+                       {{"Properties70",
+                         {},
+                         {number_property("d|X", is_turned ? 5 : 0), number_property("d|Y", is_turned ? 6 : 0),
+                          number_property("d|Z", is_turned ? 7 : 0)}}}));
+            objects.push_back(object("AnimationCurve", first + 3, "AnimCurve::", "",
+                                     {{"KeyTime", {motion.times}, {}},
+                                      {"KeyValueFloat", {motion.values}, {}},
+                                      {"KeyAttrFlags", {motion.flags}, {}},
+                                      {"KeyAttrDataFloat", {motion.data}, {}},
+                                      {"KeyAttrRefCount", {whole(motion.times.size(), 1)}, {}}}));
+            links.push_back(link("OO", first + 1, first));
+            links.push_back(link("OO", first + 2, first + 1));
+            links.push_back(to_property(first + 2, 1, "Lcl Translation"));
+            links.push_back(to_property(first + 3, first + 2, "d|X"));
+            first += 10;
+        };
+        add(*this);
+        for (auto const& motion : more) {
+            add(motion);
+        }
         return {{"FBXHeaderExtension", {}, {{"FBXVersion", {version}, {}}}},
                 {"GlobalSettings", {}, {{"Version", {std::int32_t{1000}}, {}}, {"Properties70", {}, {rate}}}},
                 {"Definitions", {}, {{"Version", {std::int32_t{100}}, {}}}},
-                {"Objects",
-                 {},
-                 {object("Geometry", 2, "Geometry::thing", "Mesh",
-                         {{"Vertices", {doubles{0, 0, 0, 1, 0, 0, 0, 1, 0}}, {}},
-                          {"PolygonVertexIndex", {whole{0, 1, -3}}, {}}}),
-                  object("Model", 1, "Model::thing", "Mesh", {{"Version", {std::int32_t{232}}, {}}}),
-                  object("AnimationStack", 3, "AnimStack::Take", "", {{"Properties70", {}, {}}}),
-                  object("AnimationLayer", 4, "AnimLayer::Layer", "", {{"Properties70", {}, {}}}),
-                  object("AnimationCurveNode", 5, "AnimCurveNode::T", "", {{"Properties70", {}, {}}}),
-                  object("AnimationCurve", 6, "AnimCurve::", "",
-                         {{"KeyTime", {times}, {}},
-                          {"KeyValueFloat", {values}, {}},
-                          {"KeyAttrFlags", {flags}, {}},
-                          {"KeyAttrDataFloat", {data}, {}},
-                          {"KeyAttrRefCount", {runs}, {}}})}},
-                {"Connections",
-                 {},
-                 {link("OO", 1, 0), link("OO", 2, 1), link("OO", 4, 3), link("OO", 5, 4),
-                  to_property(5, 1, "Lcl Translation"), to_property(6, 5, "d|X")}}};
+                {"Objects", {}, objects},
+                {"Connections", {}, links}};
+    }
+
+    static fbx_tree number_property(char const* name, double value) {
+        return {"P", {std::string(name), std::string("Number"), std::string(), std::string("A"), value}, {}};
     }
 
     std::string text() const {

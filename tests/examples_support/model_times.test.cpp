@@ -167,6 +167,9 @@ TEST_SUITE("examples_support/model_times") {
         CHECK(times.frames_per_second == doctest::Approx(30));
         CHECK(times.name.empty());
         CHECK(times_of({}, {.frames = 3, .frames_per_second = 8}).frames_per_second == doctest::Approx(8));
+        CHECK(times_of({}, {.frames = 0, .frames_at_rest = 24}).seconds.size() == 24);
+        CHECK(times_of({}, {.frames = 5, .frames_at_rest = 24}).seconds.size() == 5);
+        CHECK(times_of(same, {.frames = 0, .frames_at_rest = 24}).seconds.size() == 48); // the animation decides
     }
 
     TEST_CASE("rates that are none are refused by name") {
