@@ -97,11 +97,13 @@ inline std::string reader_of(std::filesystem::path const& path) {
     return reader != nullptr ? reader->mName : "reader";
 }
 
-/// Processor time that a file of this size may take: slow readers do a megabyte a second.
-inline unsigned patience_for(std::filesystem::path const& path) {
+/// What the reading of a file of this size may take: slow readers do a megabyte in seconds, and need a hundred times
+/// its size.
+inline trial_limits limits_for(std::filesystem::path const& path) {
     std::error_code unknown;
-    auto const bytes = std::filesystem::file_size(path, unknown);
-    return 60 + (unknown ? 0 : static_cast<unsigned>(bytes >> 20) * 10);
+    auto const size = std::filesystem::file_size(path, unknown);
+    auto const bytes = unknown ? 0 : static_cast<std::uint64_t>(size);
+    return {60 + static_cast<unsigned>(bytes >> 20) * 10, (std::uint64_t(1) << 30) + 200 * bytes};
 }
 
 /// How many blend shapes of the meshes at a node and its children no key moves. Keys name the node or the mesh.
@@ -156,7 +158,7 @@ inline assimp_file read_assimp_file(std::filesystem::path const& path) {
             Assimp::Importer importer;
             detail::read_with(importer, name, instead);
         },
-        detail::patience_for(path));
+        detail::limits_for(path));
     if (failure) {
         refuse("assimp's " + detail::reader_of(path) + " " + *failure);
     }

@@ -21,7 +21,6 @@ struct model_object_report {
     std::size_t joints = 0; ///< that move its vertices
     std::size_t morph_targets = 0;
     bool has_made_uvs = false;   ///< the file has none, or none that can be used, or new ones were asked for
-    bool asked_for_uvs = false;  ///< new ones were asked for
     std::size_t uvs_outside = 0; ///< vertices with u or v outside [0, 1]
     uv_overlap overlap{};        ///< over a texture of 512 x 512 texels
 
@@ -38,6 +37,7 @@ struct model_report {
     std::string animation;                    ///< name of the animation that is played; empty without one
     double seconds = 0;                       ///< its length
     std::vector<std::string> notes;           ///< sentences
+    bool asked_for_uvs = false;               ///< new texture coordinates were asked for
 };
 
 namespace detail {
@@ -105,7 +105,7 @@ inline std::vector<std::string> lines_of(model_report const& report) {
     }
     lines.push_back(detail::contents_of(report.objects));
     detail::named_objects const without(
-        report.objects, [](auto const& object) { return object.has_made_uvs && !object.asked_for_uvs; });
+        report.objects, [&](auto const& object) { return object.has_made_uvs && !report.asked_for_uvs; });
     if (without.count > 0) {
         lines.push_back(without.have + " no usable UVs " + without.names + ": an atlas of the triangles was made.");
     }

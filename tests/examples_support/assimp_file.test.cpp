@@ -87,10 +87,31 @@ TEST_SUITE("examples_support/assimp_file") {
         CHECK(fbx_frame_rate(aiScene()) == doctest::Approx(24));
     }
 
-    TEST_CASE("a larger file may take longer") {
+    TEST_CASE("a file that leads a reader to take ever more memory is refused") {
         scratch_folder const folder;
-        CHECK(detail::patience_for(folder.write("small", "x")) == 60);
-        CHECK(detail::patience_for(folder.write("large", std::string(3 << 20, 'x'))) == 90);
-        CHECK(detail::patience_for(folder / "missing") == 60);
+        // One byte that is no digit among the indices of a Collada file
+        auto const dae = folder.write(
+            "stray.dae",
+            "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>"
+            "<library_geometries><geometry id='g'><mesh><source id='p'><float_array id='a' count='9'>"
+            "0 0 0 1 0 0 0 1 0</float_array><technique_common><accessor source='#a' count='3' stride='3'>"
+            "<param name='X' type='float'/><param name='Y' type='float'/><param name='Z' type='float'/></accessor>"
+            "</technique_common></source><vertices id='v'><input semantic='POSITION' source='#p'/></vertices>"
+            "<triangles count='1'><input semantic='VERTEX' source='#v' offset='0'/><p>0 1\xaf 2</p></triangles>"
+            "</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id='w'><node id='n'>"
+            "<instance_geometry url='#g'/></node></visual_scene></library_visual_scenes>"
+            "<scene><instance_visual_scene url='#w'/></scene></COLLADA>");
+        auto const text = refusal(dae);
+        CHECK(text.rfind(dae.string() + ": cannot be read as a model (", 0) == 0);
+        MESSAGE(text);
+    }
+
+    TEST_CASE("a larger file may take longer and more") {
+        scratch_folder const folder;
+        CHECK(detail::limits_for(folder.write("small", "x")).processor_seconds == 60);
+        auto const large = detail::limits_for(folder.write("large", std::string(3 << 20, 'x')));
+        CHECK(large.processor_seconds == 90);
+        CHECK(large.bytes > 1'600'000'000);
+        CHECK(detail::limits_for(folder / "missing").bytes == 1 << 30);
     }
 }

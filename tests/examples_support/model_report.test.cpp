@@ -53,8 +53,8 @@ TEST_SUITE("examples_support/model_report") {
     TEST_CASE("an atlas that was asked for is no fault of the file") {
         model_report report;
         report.objects = {object("a", 1), object("b", 1)};
-        report.objects[0].has_made_uvs = report.objects[0].asked_for_uvs = true;
-        report.objects[1].has_made_uvs = report.objects[1].asked_for_uvs = true;
+        report.asked_for_uvs = report.objects[0].has_made_uvs = true;
+        report.objects[1].has_made_uvs = true;
         report.objects[1].joints = 2;
         CHECK(lines_of(report) == lines{"2 objects of 2 triangles, up to 2 joints."});
     }
