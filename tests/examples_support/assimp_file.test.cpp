@@ -15,7 +15,7 @@ using genrender::tests::scratch_folder;
 
 namespace {
 
-std::string refusal(std::filesystem::path const& path) {
+std::string reading_refusal(std::filesystem::path const& path) {
     try {
         read_assimp_file(path);
     } catch (file_error const& error) {
@@ -24,7 +24,7 @@ std::string refusal(std::filesystem::path const& path) {
     return "no error";
 }
 
-std::filesystem::path field(std::string const& name) {
+std::filesystem::path field_input(std::string const& name) {
     return std::filesystem::path(GENRENDER_TEST_DATA) / "field" / name;
 }
 
@@ -40,12 +40,14 @@ double rate_of(std::int32_t number, float custom) {
 
 TEST_SUITE("examples_support/assimp_file") {
     TEST_CASE("a file that crashes a reader is refused with the reader's name") {
-        auto const skin = field("malformed_skinweights_oob.x");
-        CHECK(refusal(skin) == skin.string() + ": cannot be read as a model (assimp's Direct3D XFile Importer crashed "
-                                               "(Segmentation fault)), expected a whole file that assimp knows");
-        auto const empty = field("malformed_zero_numvertices.md2");
-        CHECK(refusal(empty) == empty.string() + ": cannot be read as a model (assimp's Quake II Mesh Importer crashed "
-                                                 "(Segmentation fault)), expected a whole file that assimp knows");
+        auto const skin = field_input("malformed_skinweights_oob.x");
+        CHECK(reading_refusal(skin) == skin.string() +
+                                           ": cannot be read as a model (assimp's Direct3D XFile Importer crashed "
+                                           "(Segmentation fault)), expected a whole file that assimp knows");
+        auto const empty = field_input("malformed_zero_numvertices.md2");
+        CHECK(reading_refusal(empty) == empty.string() +
+                                            ": cannot be read as a model (assimp's Quake II Mesh Importer crashed "
+                                            "(Segmentation fault)), expected a whole file that assimp knows");
     }
 
     TEST_CASE("a skeleton without a mesh is refused and nothing is shown in its place") {
@@ -53,16 +55,16 @@ TEST_SUITE("examples_support/assimp_file") {
         std::string const joints = "version 1\nnodes\n0 \"root\" -1\n1 \"knee\" 0\nend\nskeleton\n"
                                    "time 0\n0 0 0 0 0 0 0\n1 0 1 0 0 0 0\ntime 9\n0 0 0 0 0 0 0\n1 0 2 0 0 0 0\nend\n";
         auto const smd = folder.write("joints.smd", joints).string();
-        CHECK(refusal(smd) == smd + ": holds no mesh, only a skeleton, expected the surface as well");
+        CHECK(reading_refusal(smd) == smd + ": holds no mesh, only a skeleton, expected the surface as well");
         auto const bvh = folder.write("joints.bvh", "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition "
                                                     "Yposition Zposition Zrotation Xrotation Yrotation\nEnd Site\n{\n"
                                                     "OFFSET 0 1 0\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.04\n"
                                                     "0 0 0 0 0 0\n0 1 0 0 0 0\n");
-        CHECK(refusal(bvh) == bvh.string() + ": holds no mesh, only a skeleton, expected the surface as well");
+        CHECK(reading_refusal(bvh) == bvh.string() + ": holds no mesh, only a skeleton, expected the surface as well");
     }
 
     TEST_CASE("blend shapes of an FBX file rest at 0 and those without keys are counted") {
-        auto const file = read_assimp_file(field("shapekeys_rest.fbx"));
+        auto const file = read_assimp_file(field_input("shapekeys_rest.fbx"));
         REQUIRE(file.scene->mNumMeshes == 1);
         auto const& mesh = *file.scene->mMeshes[0];
         REQUIRE(mesh.mNumAnimMeshes == 6);
@@ -101,17 +103,17 @@ TEST_SUITE("examples_support/assimp_file") {
             "</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id='w'><node id='n'>"
             "<instance_geometry url='#g'/></node></visual_scene></library_visual_scenes>"
             "<scene><instance_visual_scene url='#w'/></scene></COLLADA>");
-        auto const text = refusal(dae);
+        auto const text = reading_refusal(dae);
         CHECK(text.rfind(dae.string() + ": cannot be read as a model (", 0) == 0);
         MESSAGE(text);
     }
 
     TEST_CASE("a larger file may take longer and more") {
         scratch_folder const folder;
-        CHECK(detail::limits_for(folder.write("small", "x")).processor_seconds == 60);
-        auto const large = detail::limits_for(folder.write("large", std::string(3 << 20, 'x')));
+        CHECK(genrender::examples::detail::limits_for(folder.write("small", "x")).processor_seconds == 60);
+        auto const large = genrender::examples::detail::limits_for(folder.write("large", std::string(3 << 20, 'x')));
         CHECK(large.processor_seconds == 90);
         CHECK(large.bytes > 1'600'000'000);
-        CHECK(detail::limits_for(folder / "missing").bytes == 1 << 30);
+        CHECK(genrender::examples::detail::limits_for(folder / "missing").bytes == 1 << 30);
     }
 }

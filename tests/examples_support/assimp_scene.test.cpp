@@ -23,7 +23,7 @@ using namespace genrender::examples;
 
 namespace {
 
-std::filesystem::path field(std::string const& name) {
+std::filesystem::path field_model(std::string const& name) {
     return std::filesystem::path(GENRENDER_TEST_DATA) / "field" / name;
 }
 
@@ -129,13 +129,13 @@ TEST_SUITE("examples_support/assimp_scene") {
     }
 
     TEST_CASE("a sphere with shape keys at rest is a plain sphere") {
-        assimp_scene scene(field("shapekeys_rest.fbx"));
+        assimp_scene scene(field_model("shapekeys_rest.fbx"));
         CHECK(scene.objects().at(0).morph_targets == 6);
         check_bounds(points_at(scene, 1), glm::vec3(-100), glm::vec3(100), 0.1f); // FBX counts in centimetres
     }
 
     TEST_CASE("three cubes of a Collada file jump together as Blender has them") {
-        assimp_scene scene(field("threecubes.dae"));
+        assimp_scene scene(field_model("threecubes.dae"));
         CHECK(scene.objects().size() == 3);
         for (auto const& [frame, lower] :
              std::vector<std::pair<double, float>>{{1, -0.5f}, {10.75, 1.0592f}, {20.5, 2.4891f}, {40, -0.5f}}) {

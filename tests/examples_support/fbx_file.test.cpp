@@ -18,10 +18,10 @@ using genrender::tests::fbx_motion;
 
 namespace {
 
-constexpr std::int64_t second = 46186158000;
+constexpr std::int64_t one_second = 46186158000;
 
-fbx_motion const easing{{0, second}, {0, 8}, {0x108, 0x108}, {0, 0, 0, 0, 0, 0, 0, 0}};
-fbx_motion const straight{{0, second}, {0, 8}, {4, 4}, {0, 0, 0, 0, 0, 0, 0, 0}};
+fbx_motion const easing{{0, one_second}, {0, 8}, {0x108, 0x108}, {0, 0, 0, 0, 0, 0, 0, 0}};
+fbx_motion const going_straight{{0, one_second}, {0, 8}, {4, 4}, {0, 0, 0, 0, 0, 0, 0, 0}};
 
 /// x of the triangle's keys, as assimp reads them.
 std::vector<aiVectorKey> keys_of(std::string const& file) {
@@ -64,7 +64,7 @@ TEST_SUITE("examples_support/fbx_file") {
         std::uint32_t const weights = 9000u | (9000u << 16);
         float bits = 0;
         std::memcpy(&bits, &weights, sizeof bits);
-        fbx_motion const weighted{{0, second}, {0, 8}, {0x3000408, 0x408}, {0, 0, bits, 0, 0, 0, 0, 0}};
+        fbx_motion const weighted{{0, one_second}, {0, 8}, {0x3000408, 0x408}, {0, 0, bits, 0, 0, 0, 0, 0}};
         for (auto const& file : {weighted.text(), weighted.bytes(7400, true)}) {
             auto const made = with_straight_curves(file);
             REQUIRE(made);
@@ -76,8 +76,8 @@ TEST_SUITE("examples_support/fbx_file") {
     }
 
     TEST_CASE("files of straight lines and files that are none are left alone") {
-        CHECK(!with_straight_curves(straight.text()));
-        CHECK(!with_straight_curves(straight.bytes(7400, true)));
+        CHECK(!with_straight_curves(going_straight.text()));
+        CHECK(!with_straight_curves(going_straight.bytes(7400, true)));
         CHECK(!with_straight_curves(""));
         CHECK(!with_straight_curves("AnimationCurve: 6 {"));
         CHECK(!with_straight_curves("AnimationCurve: 6 { KeyTime: *2 { a: x } }"));

@@ -34,20 +34,20 @@ private:
     std::vector<std::string> notes_;
 };
 
-using indices = std::vector<std::size_t>;
+using take_indices = std::vector<std::size_t>;
 
-std::vector<model_take> const apart{{"left", 0, 1, {"a", "b"}}, {"none", 2, 2, {"a"}}, {"right", 0.5, 3, {"c"}}};
-std::vector<model_take> const same{
+std::vector<model_take> const takes_apart{{"left", 0, 1, {"a", "b"}}, {"none", 2, 2, {"a"}}, {"right", 0.5, 3, {"c"}}};
+std::vector<model_take> const takes_alike{
     {"Walk", 0, 1.25, {"hip", "knee"}}, {"Run", 0, 3, {"knee"}}, {"1", 0, 2, {"hip"}}, {"Stand", 1, 1, {}}};
 
 model_times times_of(std::vector<model_take> const& takes, model_time_options const& options, double rate = 24) {
     return choose_times(takes_alone(takes, rate), choose_takes(takes, options.animation), options);
 }
 
-void check_seconds(std::vector<double> const& found, std::vector<double> const& expected) {
-    REQUIRE(found.size() == expected.size());
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        CHECK(found[i] == doctest::Approx(expected[i]));
+void check_seconds(std::vector<double> const& seconds, std::vector<double> const& expected) {
+    REQUIRE(seconds.size() == expected.size());
+    for (std::size_t i = 0; i < seconds.size(); ++i) {
+        CHECK(seconds[i] == doctest::Approx(expected[i]));
     }
 }
 
@@ -55,25 +55,25 @@ void check_seconds(std::vector<double> const& found, std::vector<double> const& 
 
 TEST_SUITE("examples_support/model_times") {
     TEST_CASE("takes that move different things play together and else the longest plays") {
-        CHECK(choose_takes(apart, "") == indices{0, 2}); // the one of no length moves nothing
-        CHECK(choose_takes(same, "") == indices{1});
-        CHECK(choose_takes(std::span(same).first(1), "") == indices{0});
-        CHECK(choose_takes(std::span(same).last(1), "").empty());
+        CHECK(choose_takes(takes_apart, "") == take_indices{0, 2}); // the one of no length moves nothing
+        CHECK(choose_takes(takes_alike, "") == take_indices{1});
+        CHECK(choose_takes(std::span(takes_alike).first(1), "") == take_indices{0});
+        CHECK(choose_takes(std::span(takes_alike).last(1), "").empty());
         CHECK(choose_takes({}, "").empty());
     }
 
     TEST_CASE("a take is named before it is numbered and all are all") {
-        CHECK(choose_takes(same, "Walk") == indices{0});
-        CHECK(choose_takes(same, "1") == indices{2});
-        CHECK(choose_takes(same, "0") == indices{0});
-        CHECK(choose_takes(same, "3") == indices{3});
-        CHECK(choose_takes(same, "all") == indices{0, 1, 2, 3});
+        CHECK(choose_takes(takes_alike, "Walk") == take_indices{0});
+        CHECK(choose_takes(takes_alike, "1") == take_indices{2});
+        CHECK(choose_takes(takes_alike, "0") == take_indices{0});
+        CHECK(choose_takes(takes_alike, "3") == take_indices{3});
+        CHECK(choose_takes(takes_alike, "all") == take_indices{0, 1, 2, 3});
         CHECK(choose_takes({}, "all").empty());
     }
 
     TEST_CASE("a take that is not there is refused with the names and lengths of those that are") {
         for (std::string const choice : {"walk", "4", "-1", "1x", "99999999999999999999999"}) {
-            CHECK_THROWS_WITH_AS(choose_takes(same, choice),
+            CHECK_THROWS_WITH_AS(choose_takes(takes_alike, choice),
                                  ("load_model: options.time.animation is " + choice +
                                   ", expected the name or number of one of the file's: 0 Walk (1.25 s), 1 Run (3 s), "
                                   "2 1 (2 s), 3 Stand (0 s)")
@@ -147,7 +147,7 @@ TEST_SUITE("examples_support/model_times") {
     }
 
     TEST_CASE("takes that play together last from the first key to the last") {
-        auto const times = times_of(apart, {.frames = 3});
+        auto const times = times_of(takes_apart, {.frames = 3});
         check_seconds(times.seconds, {0, 1, 2});
         CHECK(times.duration == doctest::Approx(3));
         CHECK(times.name == "left, right");
@@ -156,7 +156,7 @@ TEST_SUITE("examples_support/model_times") {
     }
 
     TEST_CASE("which of several takes plays is said with the names of the others") {
-        CHECK(times_of(same, {.frames = 2}).notes ==
+        CHECK(times_of(takes_alike, {.frames = 2}).notes ==
               std::vector<std::string>{
                   "Plays Run, one of 4 animations: 0 Walk (1.25 s), 1 Run (3 s), 2 1 (2 s), 3 Stand (0 s)."});
     }
@@ -169,12 +169,12 @@ TEST_SUITE("examples_support/model_times") {
         CHECK(times_of({}, {.frames = 3, .frames_per_second = 8}).frames_per_second == doctest::Approx(8));
         CHECK(times_of({}, {.frames = 0, .frames_at_rest = 24}).seconds.size() == 24);
         CHECK(times_of({}, {.frames = 5, .frames_at_rest = 24}).seconds.size() == 5);
-        CHECK(times_of(same, {.frames = 0, .frames_at_rest = 24}).seconds.size() == 48); // the animation decides
+        CHECK(times_of(takes_alike, {.frames = 0, .frames_at_rest = 24}).seconds.size() == 48); // the animation decides
     }
 
     TEST_CASE("rates that are none are refused by name") {
         for (double const rate : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
-            CHECK_THROWS_AS(times_of(same, {.frames_per_second = rate}), value_error);
+            CHECK_THROWS_AS(times_of(takes_alike, {.frames_per_second = rate}), value_error);
         }
         CHECK_THROWS_WITH_AS(times_of({}, {.frames_per_second = -1}),
                              "load_model: options.time.frames_per_second is -1.000000, expected a rate above 0",
