@@ -2,6 +2,7 @@
 // [GR sec. 3] A model file of any format that assimp reads: FBX, Collada, OBJ, X and many more.
 #pragma once
 
+#include "assimp_file.hpp"
 #include "model_assembly.hpp"
 #include "model_camera.hpp"
 #include "model_nodes.hpp"
@@ -12,15 +13,12 @@
 #include <genrender/core/index.hpp>
 #include <genrender/scene/animation.hpp>
 
-#include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <glm/ext/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <numbers>
@@ -35,10 +33,12 @@ namespace genrender::examples {
 /// A file that assimp has read.
 class assimp_scene final : public model_scene {
 public:
-    /// Throws file_error with assimp's reason if the file cannot be read or holds no triangles.
+    /// Throws file_error with assimp's reason if the file cannot be read (see assimp_file.hpp) or holds no triangles.
     explicit assimp_scene(std::filesystem::path const& path, model_assembly const& assembly = {})
         : path_(path.string()) {
-        read();
+        auto file = read_assimp_file(path);
+        scene_ = std::move(file.scene);
+        notes_ = std::move(file.notes);
         list_takes();
         for (unsigned i = 0; i < scene_->mNumCameras; ++i) {
             auto const& source = *scene_->mCameras[i];
@@ -53,10 +53,7 @@ public:
     std::vector<model_object_report> const& objects() const override { return objects_; }
     std::vector<std::string> const& notes() const override { return notes_; }
 
-    double frames_per_second() const override {
-        double rate = 0;
-        return scene_->mMetaData != nullptr && scene_->mMetaData->Get("CustomFrameRate", rate) && rate > 0 ? rate : 24;
-    }
+    double frames_per_second() const override { return fbx_frame_rate(*scene_); }
 
     void play(std::span<std::size_t const> takes) override {
         std::vector<aiAnimation const*> animations;
@@ -86,23 +83,6 @@ public:
     }
 
 private:
-    void read() {
-        auto const importer = std::make_shared<Assimp::Importer>();
-        std::string reason;
-        try {
-            scene_ = std::shared_ptr<aiScene const>(
-                importer, importer->ReadFile(path_, aiProcess_Triangulate | aiProcess_LimitBoneWeights |
-                                                        aiProcess_FlipUVs | aiProcess_ValidateDataStructure));
-            reason = importer->GetErrorString();
-        } catch (std::exception const& failure) {
-            reason = failure.what();
-        }
-        if (scene_ == nullptr || scene_->mRootNode == nullptr) {
-            throw file_error(path_ + ": cannot be read as a model (" + reason +
-                             "), expected a whole file that assimp knows");
-        }
-    }
-
     void add_parts(model_assembly const& assembly) {
         for (std::size_t node = 0; node < nodes_->size(); ++node) {
             for (unsigned i = 0; i < nodes_->node(node).mNumMeshes; ++i) {
@@ -123,7 +103,12 @@ private:
         for (unsigned i = 0; i < scene_->mNumAnimations; ++i) {
             auto const& source = *scene_->mAnimations[i];
             auto const [begin, end] = key_times(source);
-            model_take take{source.mName.C_Str(), begin / ticks_per_second(source), end / ticks_per_second(source), {}};
+            // Some programs write an empty take into every file
+            auto const last = moves_something(source) ? end : begin;
+            model_take take{source.mName.length > 0 ? source.mName.C_Str() : "unnamed",
+                            begin / ticks_per_second(source),
+                            last / ticks_per_second(source),
+                            {}};
             for (unsigned k = 0; k < source.mNumChannels; ++k) {
                 take.targets.push_back(source.mChannels[k]->mNodeName.C_Str());
             }

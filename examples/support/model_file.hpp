@@ -85,6 +85,7 @@ private:
         report_.notes.insert(report_.notes.end(), times_.notes.begin(), times_.notes.end());
         report_.notes.insert(report_.notes.end(), scene_->notes().begin(), scene_->notes().end());
         report_.objects = scene_->objects();
+        report_.asked_for_uvs = options.uvs == model_uvs::atlas;
     }
 
     static std::shared_ptr<model_scene> read_scene(std::filesystem::path const& path, model_assembly const& assembly) {

@@ -92,18 +92,38 @@ inline glm::mat4 transform_at(aiNodeAnim const& channel, aiMatrix4x4 const& rest
     return matrix;
 }
 
-/// The weights of a mesh's morph targets at `time`; targets that the keys do not name keep `weights`.
+/// The weights of a mesh's morph targets at `time`; targets that no key names keep `weights`. A key may name some of
+/// the targets only: each goes straight between the keys that name it, and holds before the first and after the last.
 inline void morph_weights_at(aiMeshMorphAnim const& channel, double time, std::vector<float>& weights) {
-    if (channel.mNumKeys == 0) {
-        return;
+    struct nearest_keys {
+        aiMeshMorphKey const* before = nullptr;
+        aiMeshMorphKey const* after = nullptr;
+        double weight_before = 0;
+        double weight_after = 0;
+    };
+    std::vector<nearest_keys> nearest(weights.size());
+    for (auto const& key : std::span(channel.mKeys, channel.mNumKeys)) {
+        for (unsigned i = 0; i < key.mNumValuesAndWeights; ++i) {
+            if (key.mValues[i] >= weights.size()) {
+                continue;
+            }
+            auto& found = nearest[key.mValues[i]];
+            if (key.mTime <= time) {
+                found.before = &key;
+                found.weight_before = key.mWeights[i];
+            } else if (found.after == nullptr) {
+                found.after = &key;
+                found.weight_after = key.mWeights[i];
+            }
+        }
     }
-    std::span<aiMeshMorphKey const> const keys(channel.mKeys, channel.mNumKeys);
-    auto const at = interval_at(keys, time, aiAnimBehaviour_CONSTANT, aiAnimBehaviour_CONSTANT);
-    for (unsigned i = 0; i < std::min(keys[at.first].mNumValuesAndWeights, keys[at.second].mNumValuesAndWeights); ++i) {
-        auto const target = keys[at.first].mValues[i];
-        if (target < weights.size()) {
-            weights[target] = static_cast<float>(keys[at.first].mWeights[i] * (1 - at.factor) +
-                                                 keys[at.second].mWeights[i] * at.factor);
+    for (std::size_t target = 0; target < weights.size(); ++target) {
+        auto const& [before, after, weight_before, weight_after] = nearest[target];
+        if (before != nullptr && after != nullptr) {
+            auto const factor = (time - before->mTime) / (after->mTime - before->mTime);
+            weights[target] = static_cast<float>(weight_before * (1 - factor) + weight_after * factor);
+        } else if (before != nullptr || after != nullptr) {
+            weights[target] = static_cast<float>(before != nullptr ? weight_before : weight_after);
         }
     }
 }
@@ -135,6 +155,34 @@ inline std::pair<double, double> key_times(aiAnimation const& animation) {
     return end > begin ? std::pair{begin, end} : std::pair{0.0, std::max(animation.mDuration, 0.0)};
 }
 
+/// Whether a key of the animation differs from the first of its channel.
+inline bool moves_something(aiAnimation const& animation) {
+    auto const varies = [](auto const* keys, unsigned count) {
+        return std::any_of(keys, keys + count, [&](auto const& key) { return key.mValue != keys[0].mValue; });
+    };
+    for (unsigned i = 0; i < animation.mNumChannels; ++i) {
+        auto const& channel = *animation.mChannels[i];
+        if (varies(channel.mPositionKeys, channel.mNumPositionKeys) ||
+            varies(channel.mRotationKeys, channel.mNumRotationKeys) ||
+            varies(channel.mScalingKeys, channel.mNumScalingKeys)) {
+            return true;
+        }
+    }
+    for (unsigned i = 0; i < animation.mNumMorphMeshChannels; ++i) {
+        auto const& channel = *animation.mMorphMeshChannels[i];
+        for (unsigned k = 1; k < channel.mNumKeys; ++k) {
+            auto const& first = channel.mKeys[0];
+            auto const& key = channel.mKeys[k];
+            auto const count = first.mNumValuesAndWeights;
+            if (key.mNumValuesAndWeights != count || !std::equal(key.mValues, key.mValues + count, first.mValues) ||
+                !std::equal(key.mWeights, key.mWeights + count, first.mWeights)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 /// All nodes of a scene, parents before children. Refers to the scene, which must outlive it.
 class model_nodes {
 public:
@@ -143,10 +191,15 @@ public:
         list(*scene.mRootNode, std::nullopt);
     }
 
-    /// Moved by these animations from now on, by the last one that names a node.
+    /// Moved by these animations from now on, by the last one that names a node. What moves a node replaces its whole
+    /// transformation, which FBX's reader splits over nodes before it that are named after it: those of them that
+    /// nothing moves are then left out, but for the ones of the geometry, which belong to the mesh and come after the
+    /// motion.
     void play(std::span<aiAnimation const* const> animations) {
         for (auto& entry : nodes_) {
             entry.channel = nullptr;
+            entry.rest = entry.source->mTransformation;
+            entry.fixed = to_glm(entry.rest);
         }
         for (auto const* const animation : animations) {
             for (unsigned i = 0; i < animation->mNumChannels; ++i) {
@@ -154,6 +207,11 @@ public:
                     nodes_[*node].channel = animation->mChannels[i];
                     nodes_[*node].ticks_per_second = ticks_per_second(*animation);
                 }
+            }
+        }
+        for (std::size_t node = 0; node < nodes_.size(); ++node) {
+            if (nodes_[node].channel != nullptr) {
+                replace_helpers(node);
             }
         }
     }
@@ -172,10 +230,11 @@ public:
         std::vector<glm::mat4> result;
         result.reserve(nodes_.size());
         for (auto const& entry : nodes_) {
-            auto const local = entry.channel != nullptr ? transform_at(*entry.channel, entry.source->mTransformation,
-                                                                       seconds * entry.ticks_per_second)
-                                                        : to_glm(entry.source->mTransformation);
-            result.push_back((entry.parent ? result[*entry.parent] : to_y_up_) * local);
+            auto const& parent = entry.parent ? result[*entry.parent] : to_y_up_;
+            result.push_back(entry.channel != nullptr
+                                 ? parent * transform_at(*entry.channel, entry.rest, seconds * entry.ticks_per_second) *
+                                       entry.fixed
+                                 : parent * entry.fixed);
         }
         return result;
     }
@@ -186,11 +245,39 @@ private:
         std::optional<std::size_t> parent;
         aiNodeAnim const* channel = nullptr;
         double ticks_per_second = 1;
+        aiMatrix4x4 rest;      ///< what the channel stands for
+        glm::mat4 fixed{1.0f}; ///< comes after the channel, or is all there is
     };
+
+    // Puts the node's channel where the first of the nodes stands that FBX's reader made of its transformation.
+    void replace_helpers(std::size_t node) {
+        auto const tag = std::string(nodes_[node].source->mName.C_Str()) + "_$AssimpFbx$_";
+        auto rest = nodes_[node].rest;
+        auto first = node;
+        nodes_[node].fixed = glm::mat4(1);
+        while (auto const above = nodes_[first].parent) {
+            auto& helper = nodes_[*above];
+            std::string const name = helper.source->mName.C_Str();
+            if (name.rfind(tag, 0) != 0) {
+                break;
+            }
+            first = *above;
+            if (helper.channel == nullptr && name.rfind(tag + "Geometric", 0) != 0) {
+                rest = helper.rest * rest;
+                helper.fixed = glm::mat4(1);
+            }
+        }
+        nodes_[node].rest = rest;
+        if (first != node && nodes_[first].channel == nullptr) {
+            nodes_[first].channel = std::exchange(nodes_[node].channel, nullptr);
+            nodes_[first].ticks_per_second = nodes_[node].ticks_per_second;
+            nodes_[first].rest = rest;
+        }
+    }
 
     void list(aiNode const& node, std::optional<std::size_t> parent) {
         auto const index = nodes_.size();
-        nodes_.push_back({&node, parent});
+        nodes_.push_back({&node, parent, nullptr, 1, node.mTransformation, to_glm(node.mTransformation)});
         by_name_.emplace(node.mName.C_Str(), index);
         for (unsigned i = 0; i < node.mNumChildren; ++i) {
             list(*node.mChildren[i], index);

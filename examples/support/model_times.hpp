@@ -22,9 +22,9 @@ namespace genrender::examples {
 
 /// What of a file's time is rendered.
 struct model_time_options {
-    /// Number of frames, taken evenly from the whole range, whose end a loop shows as its start; or, with
-    /// `frames_per_second`, of that rate. 0: the whole range at `frames_per_second`, or at the file's rate and then at
-    /// most `most_frames`.
+    /// Number of frames, taken evenly from the whole range, whose end a loop shows as its start, but for a last frame
+    /// that is asked for; or, with `frames_per_second`, of that rate. 0: the whole range at `frames_per_second`, or at
+    /// the file's rate and then at most `most_frames`.
     std::size_t frames = 16;
     std::size_t most_frames = 48;
     std::size_t frames_at_rest = 0; ///< instead of 0 frames where nothing moves
@@ -56,23 +56,26 @@ inline std::string text_of(model_take const& take) {
     return take.name + seconds;
 }
 
+/// `0 Walk (1.25 s), 1 Run (3 s)`, of at most twelve.
 inline std::string list_of(std::span<model_take const> takes) {
     std::string text;
-    for (std::size_t i = 0; i < takes.size(); ++i) {
+    auto const named = std::min<std::size_t>(takes.size(), 12);
+    for (std::size_t i = 0; i < named; ++i) {
         text += (i > 0 ? ", " : "") + std::to_string(i) + " " + text_of(takes[i]);
     }
-    return text;
+    return text + (named < takes.size() ? " and " + std::to_string(takes.size() - named) + " more" : "");
 }
 
-/// Whether no two of the takes move the same thing.
-inline bool are_apart(std::span<model_take const> takes) {
+/// Whether no two of the takes that are `chosen` move the same thing.
+inline bool are_apart(std::span<model_take const> takes, std::span<std::size_t const> chosen) {
     std::vector<std::string> moved;
     std::size_t count = 0;
-    for (auto const& take : takes) {
+    for (auto const take : chosen) {
+        auto const& targets = takes[take].targets;
         std::vector<std::string> both;
-        std::set_union(moved.begin(), moved.end(), take.targets.begin(), take.targets.end(), std::back_inserter(both));
+        std::set_union(moved.begin(), moved.end(), targets.begin(), targets.end(), std::back_inserter(both));
         moved = std::move(both);
-        count += take.targets.size();
+        count += targets.size();
     }
     return moved.size() == count;
 }
@@ -88,7 +91,7 @@ inline std::vector<std::size_t> choose_takes(std::span<model_take const> takes, 
             lasting.push_back(i);
         }
     }
-    if (choice == "all" || (choice.empty() && (lasting.empty() || detail::are_apart(takes)))) {
+    if (choice == "all" || (choice.empty() && (lasting.empty() || detail::are_apart(takes, lasting)))) {
         return lasting;
     }
     if (choice.empty()) {
@@ -152,14 +155,14 @@ inline model_times choose_times(model_scene const& scene, std::span<std::size_t 
                                    : std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(steps)));
     auto const most = fps > 0 ? whole : std::min(whole, options.most_frames);
     auto const frames = options.frames > 0 ? options.frames : most;
+    auto const steps_of_all = static_cast<double>(options.end && frames > 1 ? frames - 1 : frames);
     for (std::size_t i = 0; i < frames; ++i) {
-        auto const at = is_real_time ? static_cast<double>(i) / shown
-                                     : static_cast<double>(i) * times.duration / static_cast<double>(frames);
+        auto const at =
+            is_real_time ? static_cast<double>(i) / shown : static_cast<double>(i) * times.duration / steps_of_all;
         auto const wraps = times.duration > 0 && !(options.end && at <= times.duration + 1e-9);
         times.seconds.push_back(begin + (wraps ? std::fmod(at, times.duration) : std::min(at, times.duration)));
     }
-    times.frames_per_second =
-        is_real_time || !(times.duration > 0) ? shown : static_cast<double>(frames) / times.duration;
+    times.frames_per_second = is_real_time || !(times.duration > 0) ? shown : steps_of_all / times.duration;
 
     // What is worth saying
     if (scene.takes().size() > 1) {

@@ -35,6 +35,53 @@ std::string channel_text(std::string const& node, std::string const& path, std::
            R"(, "path": ")" + path + R"("}}]})";
 }
 
+/// A Collada file of one triangle that moves along x, and cameras: a name, how it projects, where it stands and how it
+/// is turned around x.
+struct collada_camera {
+    std::string name, optics, place, turn;
+};
+std::string collada_text(std::vector<collada_camera> const& cameras) {
+    auto const floats = [](std::string const& id, std::string const& count, std::string const& values,
+                           std::string const& stride, std::string const& params) {
+        return "<source id='" + id + "'><float_array id='" + id + "-a' count='" + count + "'>" + values +
+               "</float_array><technique_common><accessor source='#" + id + "-a' count='" + "COUNT" + "' stride='" +
+               stride + "'>" + params + "</accessor></technique_common></source>";
+    };
+    auto const counted = [](std::string text, std::string const& count) {
+        return text.replace(text.find("COUNT"), 5, count);
+    };
+    std::string const xyz =
+        "<param name='X' type='float'/><param name='Y' type='float'/><param name='Z' type='float'/>";
+    std::string lenses, nodes;
+    for (auto const& camera : cameras) {
+        lenses += "<camera id='" + camera.name + "-c' name='" + camera.name + "'><optics><technique_common>" +
+                  camera.optics + "</technique_common></optics></camera>";
+        nodes += "<node id='" + camera.name + "' name='" + camera.name + "'><translate>" + camera.place +
+                 "</translate><rotate>1 0 0 " + camera.turn + "</rotate><instance_camera url='#" + camera.name +
+                 "-c'/></node>";
+    }
+    return "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>"
+           "<asset><up_axis>Y_UP</up_axis></asset>"
+           "<library_cameras>" +
+           lenses +
+           "</library_cameras>"
+           "<library_geometries><geometry id='g' name='g'><mesh>" +
+           counted(floats("p", "9", "0 0 0 1 0 0 0 0 1", "3", xyz), "3") +
+           "<vertices id='v'><input semantic='POSITION' source='#p'/></vertices>"
+           "<triangles count='1'><input semantic='VERTEX' source='#v' offset='0'/><p>0 1 2</p></triangles>"
+           "</mesh></geometry></library_geometries>"
+           "<library_animations><animation id='a'>" +
+           counted(floats("t", "2", "0 1", "1", "<param name='TIME' type='float'/>"), "2") +
+           counted(floats("o", "2", "0 0.5", "1", "<param name='X' type='float'/>"), "2") +
+           "<sampler id='s'><input semantic='INPUT' source='#t'/><input semantic='OUTPUT' source='#o'/></sampler>"
+           "<channel source='#s' target='n/move.X'/></animation></library_animations>"
+           "<library_visual_scenes><visual_scene id='w'>"
+           "<node id='n' name='n'><translate sid='move'>0 0 0</translate><instance_geometry url='#g'/></node>" +
+           nodes +
+           "</visual_scene></library_visual_scenes>"
+           "<scene><instance_visual_scene url='#w'/></scene></COLLADA>";
+}
+
 model_animation load(scratch_folder const& folder, gltf_file const& file, model_options const& options = {}) {
     return load_model(folder.write("model.gltf", file.text()), options);
 }
@@ -197,8 +244,9 @@ TEST_SUITE("examples_support/model_file") {
         auto const model = load(folder, file, {.time = {.frames = 2}});
 
         CHECK(model.report().objects[0].has_made_uvs);
-        CHECK(lines_of(model.report())[0] ==
-              "body: 2 triangles, 2 joints; no usable UVs in the file: an atlas of its triangles was made");
+        CHECK(lines_of(model.report()) ==
+              std::vector<std::string>{"body: 2 triangles, 2 joints.",
+                                       "1 object has no usable UVs (body): an atlas of the triangles was made."});
         auto const scene = model.frame({1});
         REQUIRE(scene.objects[0].positions.size() == 6);
         for (std::size_t i = 0; i < 6; ++i) {
@@ -311,6 +359,64 @@ TEST_SUITE("examples_support/model_file") {
         CHECK(refusal(path).rfind(path.string() + ": no camera can see it (", 0) == 0);
     }
 
+    TEST_CASE("a camera of which the model is a speck is not used unless asked for and that is said") {
+        scratch_folder const folder;
+        // assimp reads an orthographic camera as one with an eye, here 1,200 units above a triangle of one
+        auto const dae = folder.write(
+            "top.dae",
+            collada_text({{"top", "<orthographic><xmag>1</xmag><znear>0.1</znear><zfar>2000</zfar></orthographic>",
+                           "0 1200 0", "-90"}}));
+        auto const fitted = load_model(dae, {.time = {.frames = 2}});
+        check_in_view(fitted, 1);
+        CHECK(filled_share(fitted.frame({0}).camera, fitted.frame({0}).objects[0].positions, 1) > 0.05);
+        REQUIRE(fitted.report().notes.size() == 1);
+        auto const& note = fitted.report().notes[0];
+        CHECK(note.rfind("The file's camera top is not used: the model fills ", 0) == 0);
+        CHECK(note.find(" % of its picture.") != std::string::npos);
+        auto const asked = load_model(dae, {.time = {.frames = 2}, .view = model_view::file});
+        check_near(position_of(asked.frame({0}).camera), {0, 1200, 0});
+    }
+
+    TEST_CASE("a camera is chosen by its name and one that is not there is refused with the names of the others") {
+        scratch_folder const folder;
+        std::string const optics = "<perspective><xfov>45</xfov><znear>0.1</znear><zfar>99</zfar></perspective>";
+        auto const dae = folder.write("two.dae", collada_text({{"near", optics, "0.5 0 3", "0"},
+                                                               {"far", optics, "0.5 0 6", "0"},
+                                                               {"away", optics, "0.5 0 6", "180"}}));
+        auto const distance_of = [&](model_options const& options) {
+            return position_of(load_model(dae, options).frame({0}).camera).z;
+        };
+        CHECK(distance_of({.time = {.frames = 2}, .view = model_view::file}) == doctest::Approx(3)); // the first
+        CHECK(distance_of({.time = {.frames = 2}, .view = model_view::file, .camera = "far"}) == doctest::Approx(6));
+        CHECK(distance_of({.time = {.frames = 2}, .view = model_view::file, .camera = "near"}) == doctest::Approx(3));
+        // One that is asked for is used even if it sees nothing, which is said
+        auto const away = load_model(dae, {.time = {.frames = 2}, .view = model_view::file, .camera = "away"});
+        CHECK(away.report().notes ==
+              std::vector<std::string>{"Looks through the file's camera away, which sees 0 % of the model."});
+        CHECK_THROWS_WITH_AS(load_model(dae, {.time = {.frames = 2}, .view = model_view::file, .camera = "Far"}),
+                             "load_model: options.camera is Far, expected a camera of the file: near, far, away",
+                             value_error);
+        auto const none = folder.write("none.dae", collada_text({}));
+        CHECK_THROWS_WITH_AS(load_model(none, {.time = {.frames = 2}, .view = model_view::file, .camera = "far"}),
+                             "load_model: options.camera is far, expected none, as the file holds no camera",
+                             value_error);
+    }
+
+    TEST_CASE("three cubes with an animation each jump together") {
+        auto const model = load_model(std::filesystem::path(GENRENDER_TEST_DATA) / "field" / "threecubes.dae",
+                                      {.time = {.frames = 0, .frames_per_second = 24, .start = 1, .end = 40}});
+        REQUIRE(model.frame_count() == 40);
+        CHECK(model.report().objects.size() == 3);
+        for (auto const& [frame, lowest] : std::vector<std::pair<std::uint32_t, float>>{{0, -0.5f}, {39, -0.5f}}) {
+            for (auto const& object : model.frame({frame}).objects) {
+                CHECK(bounds_of(object.positions).lower.y == doctest::Approx(lowest).epsilon(1e-3));
+            }
+        }
+        for (auto const& object : model.frame({19}).objects) { // frame 20 of the file: half a frame from the highest
+            CHECK(bounds_of(object.positions).lower.y == doctest::Approx(2.489).epsilon(0.02));
+        }
+    }
+
     TEST_CASE("z can be told to be up") {
         scratch_folder const folder;
         auto file = triangle_file();
@@ -328,12 +434,17 @@ TEST_SUITE("examples_support/model_file") {
         auto const& object = model.report().objects.at(0);
         CHECK(object.uvs_outside == 1);
         CHECK(object.overlapping_share() > 0.4);
-        auto const text = text_of(object);
-        CHECK(text.find("1 of 9 UVs lie outside [0, 1]: wrap the UV maps") != std::string::npos);
-        CHECK(text.find("of its texels belong to several places, which will look alike") != std::string::npos);
+        auto const lines = lines_of(model.report());
+        REQUIRE(lines.size() == 3);
+        CHECK(lines[0] == "defaultobject: 3 triangles.");
+        CHECK(lines[1] ==
+              "1 object has UVs outside [0, 1] (defaultobject): where texels are used the texture repeats there.");
+        CHECK(lines[2].rfind("1 object has texels that belong to several places (defaultobject), up to ", 0) == 0);
+        CHECK(lines[2].find(" %: those places look alike; --atlas tells them apart.") != std::string::npos);
         auto const atlas = load_model(obj, {.uvs = model_uvs::atlas});
         CHECK(atlas.report().objects[0].overlap.overlapping == 0);
         CHECK(atlas.report().objects[0].uvs_outside == 0);
+        CHECK(lines_of(atlas.report()).size() == 1); // it was asked for: nothing to say
     }
 
     TEST_CASE("files that are missing or foreign or broken or empty are refused with the reason") {
@@ -379,12 +490,14 @@ TEST_SUITE("examples_support/model_file") {
             CHECK(model.report().objects.size() == 1);
             CHECK(model.report().objects[0].triangles == 3732);
             CHECK(model.report().objects[0].joints == 37);
-            CHECK(model.report().animation == "Wuson_Run");
+            CHECK(model.report().animation == "Wuson_Walk"); // the longest of two that move the same joints
+            CHECK(model.report().seconds == doctest::Approx(3.6));
             CHECK(movement(model, 0, 3) > 0.1f);
             check_in_view(model, 1);
-            auto const walk = load_model(*path, {.time = {.frames = 8, .animation = "1"}});
-            CHECK(walk.report().animation == "Wuson_Walk");
-            CHECK(walk.report().seconds == doctest::Approx(3.6));
+            auto const run = load_model(*path, {.time = {.frames = 8, .animation = "Wuson_Run"}});
+            CHECK(run.report().animation == "Wuson_Run");
+            CHECK(run.report().seconds < 3.6);
+            CHECK(movement(run, 0, 3) > 0.1f);
             // Upright: higher than its feet are apart is wrong for a bison, but its feet are below its hump
             auto const box = bounds_of(model.frame({0}).objects[0].positions);
             CHECK(box.upper.y - box.lower.y > 0.5f * (box.upper.x - box.lower.x));

@@ -96,4 +96,98 @@ TEST_SUITE("examples_support/model_nodes") {
         morph_weights_at(channel, 0.5, weights);
         CHECK(weights == std::vector<float>{0.1f, 0.2f, 0.75f});
     }
+
+    TEST_CASE("a target that some keys do not name goes straight between those that do") {
+        aiMeshMorphAnim channel;
+        channel.mNumKeys = 3;
+        channel.mKeys = new aiMeshMorphKey[3];
+        auto const set = [&](unsigned k, double time, std::initializer_list<std::pair<unsigned, double>> named) {
+            channel.mKeys[k].mTime = time;
+            channel.mKeys[k].mNumValuesAndWeights = static_cast<unsigned>(named.size());
+            channel.mKeys[k].mValues = new unsigned[named.size()];
+            channel.mKeys[k].mWeights = new double[named.size()];
+            std::size_t i = 0;
+            for (auto const& [target, weight] : named) {
+                channel.mKeys[k].mValues[i] = target;
+                channel.mKeys[k].mWeights[i++] = weight;
+            }
+        };
+        set(0, 0, {{0, 0.0}});
+        set(1, 1, {{1, 1.0}});
+        set(2, 4, {{1, 0.25}, {0, 1.0}});
+        auto const at_time = [&](double time) {
+            std::vector<float> weights{9, 9, 0.5f};
+            morph_weights_at(channel, time, weights);
+            return weights;
+        };
+        CHECK(at_time(-1) == std::vector<float>{0, 1, 0.5f});
+        CHECK(at_time(1) == std::vector<float>{0.25f, 1, 0.5f});
+        CHECK(at_time(2) == std::vector<float>{0.5f, 0.75f, 0.5f});
+        CHECK(at_time(9) == std::vector<float>{1, 0.25f, 0.5f});
+    }
+
+    TEST_CASE("an animation whose keys are all the same moves nothing") {
+        aiAnimation animation;
+        animation.mNumChannels = 1;
+        animation.mChannels = new aiNodeAnim* [1] { new aiNodeAnim };
+        CHECK(!moves_something(animation));
+        auto& channel = *animation.mChannels[0];
+        channel.mNumPositionKeys = 2;
+        channel.mPositionKeys = new aiVectorKey[2]{{0, {1, 2, 3}}, {5, {1, 2, 3}}};
+        CHECK(!moves_something(animation));
+        channel.mPositionKeys[1].mValue.z = 4;
+        CHECK(moves_something(animation));
+    }
+
+    TEST_CASE("a channel replaces the nodes that FBX's reader split its transformation over") {
+        // root > a_T > a_PreRotation > a_GeometricTranslation > a > child, and what the inverse of the geometry undoes
+        auto const node = [](char const* name, aiVector3D const& by, aiNode* child) {
+            auto* const made = new aiNode(name);
+            aiMatrix4x4::Translation(by, made->mTransformation);
+            if (child != nullptr) {
+                made->addChildren(1, &child);
+            }
+            return made;
+        };
+        aiScene scene;
+        auto* const a = node("a", {0, 0, 0}, node("child", {0, 0, 1}, nullptr));
+        auto* const geometry = node("a_$AssimpFbx$_GeometricTranslation", {0, 5, 0}, a);
+        auto* const turned = node("a_$AssimpFbx$_PreRotation", {0, 0, 0}, geometry);
+        aiMatrix4x4::RotationZ(std::numbers::pi_v<float> / 2, turned->mTransformation);
+        scene.mRootNode = node("root", {100, 0, 0}, node("a_$AssimpFbx$_Translation", {1, 2, 3}, turned));
+        model_nodes nodes(scene, glm::mat4(1));
+        auto const place = [&](char const* name, double seconds) {
+            return glm::vec3(nodes.to_world(seconds).at(nodes.find(aiString(name)).value())[3]);
+        };
+        CHECK(glm::distance(place("a", 0), {100 + 1 - 5, 2, 3}) < 1e-4f); // at rest all of them count
+
+        aiAnimation animation;
+        animation.mTicksPerSecond = 1;
+        animation.mNumChannels = 1;
+        animation.mChannels = new aiNodeAnim* [1] { new aiNodeAnim };
+        auto& channel = *animation.mChannels[0];
+        channel.mNodeName = "a";
+        channel.mNumPositionKeys = 2;
+        channel.mPositionKeys = new aiVectorKey[2]{{0, {1, 2, 3}}, {1, {11, 2, 3}}};
+        nodes.play(std::vector<aiAnimation const*>{&animation});
+        // The rotation has no keys and stays as at rest: a quarter turn takes the geometry's y to -x
+        CHECK(glm::distance(place("a", 0), {100 + 1 - 5, 2, 3}) < 1e-4f);
+        CHECK(glm::distance(place("a", 0.5), {100 + 6 - 5, 2, 3}) < 1e-4f);
+        CHECK(glm::distance(place("child", 1), {100 + 11 - 5, 2, 4}) < 1e-4f);
+
+        // With keys of its own the rotation is the channel's, and is not applied twice
+        channel.mNumRotationKeys = 1;
+        channel.mRotationKeys = new aiQuatKey[1]{{0, aiQuaternion(aiVector3D(0, 0, 1), std::numbers::pi_v<float>)}};
+        nodes.play(std::vector<aiAnimation const*>{&animation});
+        CHECK(glm::distance(place("a", 0), {100 + 1, 2 - 5, 3}) < 1e-4f);
+
+        // A helper that has a channel moves, and the others stay
+        channel.mNodeName = "a_$AssimpFbx$_Translation";
+        channel.mNumRotationKeys = 0;
+        nodes.play(std::vector<aiAnimation const*>{&animation});
+        CHECK(glm::distance(place("a", 1), {100 + 11 - 5, 2, 3}) < 1e-4f);
+        nodes.play({});
+        CHECK(glm::distance(place("a", 1), {100 + 1 - 5, 2, 3}) < 1e-4f);
+        channel.mNumRotationKeys = 1; // as allocated
+    }
 }
