@@ -67,7 +67,11 @@ inline std::string fbx_bytes(std::filesystem::path const& path) {
     auto extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    std::ifstream stream(extension == ".fbx" ? path : std::filesystem::path(), std::ios::binary);
+    std::error_code unknown;
+    if (extension != ".fbx" || !std::filesystem::is_regular_file(path, unknown)) {
+        return {};
+    }
+    std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 

@@ -55,7 +55,7 @@ inline void limit_memory(std::uint64_t bytes) {
 /// Runs `work` and ends this process, silently: 0 if `work` returned or threw an exception.
 template <class Work>
 [[noreturn]] void end_after(Work&& work, trial_limits const& limits) {
-    // Nothing of a debugger's or sanitizer's report, no core file, no handlers of the program that forked
+    // Nothing of a debugger's or sanitizer's report, no core file, no handlers of crashes
     auto const nowhere = ::open("/dev/null", O_WRONLY);
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);
@@ -64,7 +64,7 @@ template <class Work>
     rlimit const time{limits.processor_seconds, limits.processor_seconds + 1};
     ::setrlimit(RLIMIT_CPU, &time);
     limit_memory(limits.bytes);
-    for (int const signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGXCPU, SIGINT, SIGTERM}) {
+    for (int const signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGXCPU}) {
         std::signal(signal, SIG_DFL);
     }
     try {

@@ -108,6 +108,15 @@ TEST_SUITE("examples_support/assimp_file") {
         MESSAGE(text);
     }
 
+    TEST_CASE("a folder that is called as a model is refused as a file that is missing is") {
+        scratch_folder const folder;
+        std::filesystem::create_directory(folder / "model.fbx");
+        for (std::string const name : {"model.fbx", "missing.fbx", "missing"}) {
+            auto const path = (folder / name).string();
+            CHECK(reading_refusal(path).rfind(path + ": cannot be read as a model (", 0) == 0);
+        }
+    }
+
     TEST_CASE("a larger file may take longer and more") {
         scratch_folder const folder;
         CHECK(genrender::examples::detail::limits_for(folder.write("small", "x")).processor_seconds == 60);
