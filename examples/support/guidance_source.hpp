@@ -4,6 +4,7 @@
 
 #include "../scenes/scenes.hpp"
 #include "exr_maps.hpp"
+#include "exr_scene.hpp"
 #include "model_file.hpp"
 #include "render_options.hpp"
 
@@ -23,6 +24,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +38,8 @@ struct guidance_source {
     environment_rays rays; ///< of the scene's cameras; none with maps
     grid_extents image;
     std::vector<std::string> notes;
+    std::optional<double> frames_per_second;      ///< at which the input plays, where it says
+    std::map<std::uint32_t, std::string> objects; ///< names by the maps' object indices, where the input says
 };
 
 namespace detail {
@@ -42,16 +47,6 @@ namespace detail {
 /// Map pixels along one pixel of a rendered frame, for a model whose tokens have so many along a side: eight a token, and
 /// one a pixel at least, since errors are measured between the pixels of frames.
 inline std::size_t map_pixels(std::size_t scale) { return std::max<std::size_t>(1, 8 / scale); }
-
-/// The first `count` frames of a stack.
-template <class Tensor>
-Tensor first_frames(Tensor const& all, std::size_t count) {
-    auto shape = all.shape();
-    shape[0] = count;
-    auto result = Tensor::from_shape(shape);
-    std::copy_n(all.data(), result.size(), result.data());
-    return result;
-}
 
 /// The directions of the cameras' pixels.
 template <animation Animation>
@@ -121,22 +116,20 @@ inline guidance_source load_guidance(render_options const& options, std::size_t 
     } else {
         require_value(options.settings.noise.background != background_noise::environment, "--background", "environment",
                       "of EXR maps", "fixed or independent: cameras come with --scene and --model");
-        auto sequence = load_exr_sequence(options.maps);
+        auto sequence = load_exr_sequence(options.maps, {.layer = options.view_layer,
+                                                         .frames = {.count = options.frames},
+                                                         .has_position = positions == position_pass::on});
         source.notes = std::move(sequence.notes);
         require_value(positions == position_pass::off || sequence.position.shape()[0] > 0, "--canonical", "position",
                       "not in the EXR files", "channels LAYER.Rest.X, Y and Z (or Blender's Position pass)");
         source.guidance.uv = std::move(sequence.uv);
         source.guidance.depth = std::move(sequence.depth);
-        auto& uv = source.guidance.uv;
-        auto& depth = source.guidance.depth;
-        auto const count = std::min(options.frames.value_or(uv.frame_count()), uv.frame_count());
-        uv.uv = detail::first_frames(uv.uv, count);
-        uv.object = detail::first_frames(uv.object, count);
-        uv.coverage = detail::first_frames(uv.coverage, count);
-        depth.depth = detail::first_frames(depth.depth, count);
-        depth.coverage = uv.coverage;
-        if (positions == position_pass::on) {
-            source.guidance.position = detail::first_frames(sequence.position, count);
+        source.guidance.position = std::move(sequence.position);
+        auto const& uv = source.guidance.uv;
+        source.objects = names_in_manifest(sequence.manifest, sequence.files.front().string());
+        if (auto scene = load_exr_scene(options.maps)) {
+            source.frames_per_second = scene->frames_per_second;
+            source.objects.merge(scene->objects);
         }
         source.image = detail::image_extents(uv.grid(), options.size);
         auto const width = options.width.value_or(source.image.width);

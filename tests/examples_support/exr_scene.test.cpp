@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// scene.json beside EXR files, and the manifest of Cryptomatte.
+#include <examples/support/exr_scene.hpp>
+
+#include "../support/scratch_folder.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace genrender;
+using namespace genrender::tests;
+using examples::load_exr_scene;
+using examples::names_in_manifest;
+
+TEST_SUITE("examples_support/exr_scene") {
+    TEST_CASE("frame rate, camera and names of objects are read") {
+        scratch_folder const folder;
+        CHECK(!load_exr_scene(folder.path()));
+        folder.write("scene.json", R"({"frames_per_second": 24, "step": 2, "camera": {"name": "Close", "frames": []},
+                                       "objects": {"1": "Column", "12": "Ground"}, "of the future": 1})");
+        auto const scene = load_exr_scene(folder.path());
+        REQUIRE(scene);
+        CHECK(scene->frames_per_second == 12); // every other frame is there
+        CHECK(scene->camera == "Close");
+        CHECK(scene->objects == std::map<std::uint32_t, std::string>{{1, "Column"}, {12, "Ground"}});
+        folder.write("scene.json", "{}");
+        CHECK(!load_exr_scene(folder.path())->frames_per_second);
+    }
+
+    TEST_CASE("a scene.json of another shape is refused with file and key") {
+        scratch_folder const folder;
+        auto const path = (folder / "scene.json").string();
+        auto const refusal = [&](std::string const& text) {
+            folder.write("scene.json", text);
+            try {
+                load_exr_scene(folder.path());
+            } catch (file_error const& error) {
+                return std::string(error.what());
+            }
+            return std::string("no error");
+        };
+        CHECK(refusal("[]") == path + ": the file is [], expected an object");
+        CHECK(refusal("{").find(path + ": the file is not JSON (") == 0);
+        CHECK(refusal(R"({"frames_per_second": 0})") == path + ": frames_per_second is 0, expected a number above 0");
+        CHECK(refusal(R"({"frames_per_second": 24, "step": -1})") == path + ": step is -1, expected a number above 0");
+        CHECK(refusal(R"({"camera": 3})") == path + ": camera is 3, expected an object with a name");
+        CHECK(refusal(R"({"objects": {"one": "Cube"}})") ==
+              path + R"(: objects is {"one":"Cube"}, expected names by index)");
+        CHECK(refusal(R"({"objects": {"1": 2}})") == path + R"(: objects is {"1":2}, expected names by index)");
+    }
+
+    TEST_CASE("a manifest names objects by their ids") {
+        CHECK(names_in_manifest("", "f.exr").empty());
+        CHECK(names_in_manifest(R"({"Cube": "a8fce865", "Sphere": "0000000f"})", "f.exr") ==
+              std::map<std::uint32_t, std::string>{{0xa8fce865, "Cube"}, {15, "Sphere"}});
+        CHECK_THROWS_WITH_AS(names_in_manifest(R"({"Cube": "red"})", "f.exr"),
+                             "f.exr: the manifest of Cryptomatte has for Cube no hexadecimal id, expected names and "
+                             "hexadecimal ids",
+                             file_error);
+        CHECK_THROWS_AS(names_in_manifest(R"([1])", "f.exr"), file_error);
+        CHECK_THROWS_AS(names_in_manifest(R"({"Cube": )", "f.exr"), file_error);
+    }
+}
