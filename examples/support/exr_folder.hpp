@@ -119,7 +119,7 @@ inline exr_file_name read_file_name(std::string const& stem) {
         if (pass) {
             auto const is_rest = pass == "Position" && of_pass("rest");
             result.pass = is_rest ? "Rest" : pass;
-            i -= is_rest || (pass == "IndexOB" && (of_pass("object") || of_pass("ob"))) ? 1 : 0;
+            i -= is_rest || (pass == "IndexOB" && (of_pass("object") || of_pass("ob"))) ? 1U : 0U;
         } else if (!words[i].empty()) {
             result.layer = words[i] + (result.layer.empty() ? "" : "_") + result.layer;
         }

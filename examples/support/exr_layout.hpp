@@ -84,10 +84,10 @@ inline std::map<std::string, std::size_t> blender_layers(exr_frame const& frame)
     }
     for (auto& [layer, count] : layers) {
         for (auto const& pass : blender_passes()) {
-            count += find_pass(frame, layer, pass) != nullptr ? 1 : 0;
+            count += find_pass(frame, layer, pass) != nullptr ? 1U : 0U;
         }
         auto const has_index = find_pass(frame, layer, blender_passes()[2]) != nullptr;
-        count += !has_index && !find_cryptomatte(frame, layer).empty() ? 1 : 0;
+        count += !has_index && !find_cryptomatte(frame, layer).empty() ? 1U : 0U;
     }
     return layers;
 }

@@ -43,7 +43,7 @@ std::size_t covered(examples::exr_sequence const& sequence, std::size_t frame, s
     auto const size = sequence.uv.grid().size();
     std::size_t count = 0;
     for (auto i = frame * size; i < (frame + 1) * size; ++i) {
-        count += sequence.uv.coverage.data()[i] != 0 && (!object || sequence.uv.object.data()[i] == *object) ? 1 : 0;
+        count += sequence.uv.coverage.data()[i] != 0 && (!object || sequence.uv.object.data()[i] == *object) ? 1U : 0U;
     }
     return count;
 }
