@@ -29,6 +29,7 @@ bl_info = {
 
 REST = "Rest"  # the output variable: channels LAYER.Rest.R, G and B
 REST_ATTRIBUTE = "genrender_rest"
+KNOWN_ATTRIBUTE = "genrender_has_rest"  # 1 where there is a rest position; Cycles takes 0 for an attribute that is missing
 UV_NAME = "genrender_uv"
 SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "CURVES", "POINTCLOUD"}
 OWN_PASSES = {"use_pass_uv", "use_pass_z", "use_pass_object_index"}
@@ -137,16 +138,18 @@ def meshes_of(objects):
 
 
 def add_rest_positions(mesh, scale, changes):
-    """Adds the mesh's own positions, in the object's size, as an attribute that modifiers carry along."""
+    """Adds the mesh's own positions, in the object's size, as an attribute that modifiers carry along, unless there is
+    one of that name."""
     positions = [0.0] * (3 * len(mesh.vertices))
     mesh.vertices.foreach_get("co", positions)
     for axis in range(3):
         positions[axis::3] = [x * abs(scale[axis]) for x in positions[axis::3]]
-    attribute = mesh.attributes.new(REST_ATTRIBUTE, "FLOAT_VECTOR", "POINT")
-    name = attribute.name
-    changes.later(lambda: mesh.attributes.remove(mesh.attributes[name]))
-    attribute.data.foreach_set("vector", positions)
-    return name == REST_ATTRIBUTE
+    for name, kind, field, values in ((REST_ATTRIBUTE, "FLOAT_VECTOR", "vector", positions),
+                                      (KNOWN_ATTRIBUTE, "FLOAT", "value", [1.0] * len(mesh.vertices))):
+        if name in mesh.attributes:
+            continue
+        mesh.attributes.new(name, kind, "POINT").data.foreach_set(field, values)
+        changes.later(lambda name=name: mesh.attributes.remove(mesh.attributes[name]))
 
 
 def add_face_uvs(mesh, changes):
@@ -184,8 +187,7 @@ def prepare_objects(scene, objects, changes, notes):
         if not mesh.vertices:
             continue
         try:
-            if not add_rest_positions(mesh, o.matrix_world.to_scale(), changes):
-                notes.append(f"{o.name} has an attribute {REST_ATTRIBUTE} of its own, which is taken for rest positions.")
+            add_rest_positions(mesh, o.matrix_world.to_scale(), changes)
             if not mesh.uv_layers and mesh.polygons:
                 add_face_uvs(mesh, changes)
                 without_uvs.append(o.name)
@@ -208,24 +210,36 @@ def note_missing_uvs(scene, objects, notes):
             mesh = evaluated.to_mesh()
         except RuntimeError:
             continue
-        if mesh is not None and len(mesh.polygons) > 0 and not mesh.uv_layers:
+        if mesh is not None and len(mesh.polygons) > 0 and not spans_texture(mesh):
             names.append(o.name)
         evaluated.to_mesh_clear()
     if names:
-        notes.append("No UVs come out of the modifiers of " + ", ".join(names)
-                     + ": their pixels have all one coordinate; render with --canonical position.")
+        notes.append("No UVs that span a texture come out of " + ", ".join(names)
+                     + " (of curves, text and modifiers that make surfaces): render with --canonical position.")
+
+
+def spans_texture(mesh):
+    """Whether a mesh has UVs that vary in both directions."""
+    if not mesh.uv_layers:
+        return False
+    layer = next((layer for layer in mesh.uv_layers if layer.active_render), mesh.uv_layers[0])
+    coordinates = [0.0] * (2 * len(mesh.loops))
+    layer.data.foreach_get("uv", coordinates)
+    return all(max(coordinates[axis::2]) - min(coordinates[axis::2]) > 1e-6 for axis in range(2))
 
 
 def rest_material(changes):
     """A material that writes rest positions: the attribute, or generated coordinates where there is none."""
     material = bpy.data.materials.new("genrender_rest")
     changes.later(lambda: bpy.data.materials.remove(material))
-    if hasattr(material, "use_nodes") and not material.use_nodes:
+    if bpy.app.version < (5, 0):  # later materials always have nodes
         material.use_nodes = True
     tree = material.node_tree
     tree.nodes.clear()
-    attribute = tree.nodes.new("ShaderNodeAttribute")
-    attribute.attribute_name = REST_ATTRIBUTE
+    rest = tree.nodes.new("ShaderNodeAttribute")
+    rest.attribute_name = REST_ATTRIBUTE
+    is_known = tree.nodes.new("ShaderNodeAttribute")
+    is_known.attribute_name = KNOWN_ATTRIBUTE
     generated = tree.nodes.new("ShaderNodeTexCoord")
     mix = tree.nodes.new("ShaderNodeMix")
     mix.data_type = "VECTOR"
@@ -238,9 +252,9 @@ def rest_material(changes):
     shown = tree.nodes.new("ShaderNodeEmission")
     output = tree.nodes.new("ShaderNodeOutputMaterial")
     vectors = [s for s in mix.inputs if s.type == "VECTOR" and s.enabled]
-    tree.links.new(attribute.outputs["Alpha"], next(s for s in mix.inputs if s.type == "VALUE" and s.enabled))
+    tree.links.new(is_known.outputs["Fac"], next(s for s in mix.inputs if s.type == "VALUE" and s.enabled))
     tree.links.new(generated.outputs["Generated"], vectors[0])
-    tree.links.new(attribute.outputs["Vector"], vectors[1])
+    tree.links.new(rest.outputs["Vector"], vectors[1])
     tree.links.new(next(s for s in mix.outputs if s.enabled), written.inputs["Color"])
     tree.links.new(shown.outputs["Emission"], output.inputs["Surface"])
     return material
@@ -358,12 +372,13 @@ def make_room(folder, frames):
                 earlier = list(json.load(file).get("files", []))
         except (ValueError, AttributeError):
             raise MapsError(f"{list_path} is no file that this script wrote, expected an empty folder") from None
-    written = {f"{frame:04d}.exr" for frame in frames}
-    for name in sorted(os.listdir(folder)):
-        if name.lower().endswith(".exr"):
-            if name not in earlier and name not in written:
-                raise MapsError(f"{folder} holds {name}, which would be read as a frame; expected an empty folder")
-            os.remove(os.path.join(folder, name))
+    known = {f"{frame:04d}.exr" for frame in frames}.union(earlier)
+    found = sorted(name for name in os.listdir(folder) if name.lower().endswith(".exr"))
+    foreign = [name for name in found if name not in known]
+    if foreign:
+        raise MapsError(f"{folder} holds {foreign[0]}, which would be read as a frame; expected an empty folder")
+    for name in found:
+        os.remove(os.path.join(folder, name))
     if earlier:
         os.remove(list_path)
 
