@@ -91,7 +91,8 @@ inline std::optional<std::string> pass_of_word(std::string const& word) {
     return std::nullopt;
 }
 
-/// What a name such as `figure_uv_0001` says: its pass, what stands beside it, its number without leading zeros.
+/// What a name such as `figure_uv_0001` or `0001_uv` says: its pass, what stands beside it, its number without leading
+/// zeros.
 struct exr_file_name {
     std::optional<std::string> pass;
     std::string layer;
@@ -120,6 +121,8 @@ inline exr_file_name read_file_name(std::string const& stem) {
             auto const is_rest = pass == "Position" && of_pass("rest");
             result.pass = is_rest ? "Rest" : pass;
             i -= is_rest || (pass == "IndexOB" && (of_pass("object") || of_pass("ob"))) ? 1U : 0U;
+        } else if (end == stem.size() && std::all_of(words[i].begin(), words[i].end(), is_digit)) {
+            result.number += words[i].substr(std::min(words[i].find_first_not_of('0'), words[i].size()));
         } else if (!words[i].empty()) {
             result.layer = words[i] + (result.layer.empty() ? "" : "_") + result.layer;
         }
@@ -206,6 +209,14 @@ inline std::vector<exr_frame_files> exr_frames_of(std::filesystem::path const& f
                      [](auto const& a, auto const& b) { return detail::comes_before(a.number, b.number); });
     std::vector<exr_frame_files> frames;
     for (auto& group : groups) {
+        // Names that tell no passes of one kind apart name no layers: take3_uv, take4_depth.
+        auto const is_twice = [&](auto const& f) {
+            return std::count_if(group.files.begin(), group.files.end(),
+                                 [&](auto const& g) { return g.pass == f.pass; }) > 1;
+        };
+        if (std::none_of(group.files.begin(), group.files.end(), is_twice)) {
+            std::for_each(group.files.begin(), group.files.end(), [](auto& f) { f.layer.clear(); });
+        }
         // The UV file stands for its frame in sentences.
         std::stable_partition(group.files.begin(), group.files.end(), [](auto const& f) { return f.pass == "UV"; });
         frames.push_back(std::move(group.files));

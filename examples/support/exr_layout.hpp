@@ -47,11 +47,12 @@ struct exr_pass_names {
 
 inline std::array<exr_pass_names, 4> const& blender_passes() {
     static std::array<exr_pass_names, 4> const passes{{
-        {"UV pass", {"UV.U", "UV.X"}},
-        {"UV pass", {"UV.V", "UV.Y"}},
+        {"UV pass", {"UV.U", "UV.X", "UV.R"}},
+        {"UV pass", {"UV.V", "UV.Y", "UV.G"}},
         {"Object Index pass",
-         {"IndexOB.X", "IndexOB.V", "Object Index.X", "Object Index.V", "Index.X", "Index.V", "ID.V"}},
-        {"Z pass", {"Depth.Z", "Depth.V", "Z.Z", "Z.V"}},
+         {"IndexOB.X", "IndexOB.V", "IndexOB.R", "Object Index.X", "Object Index.V", "Object Index.R", "ObjectIndex.V",
+          "Index.X", "Index.V", "Index.R", "ID.V", "ID.R"}},
+        {"Z pass", {"Depth.Z", "Depth.V", "Depth.R", "Z.Z", "Z.V", "Z.R"}},
     }};
     return passes;
 }
@@ -153,10 +154,11 @@ inline exr_map_channels channels_of_layer(exr_frame const& frame, std::optional<
     }
     if (layer) {
         auto const* const alpha = frame.find(prefix + "UV.A");
-        auto const* const third = frame.find(prefix + "UV.Z"); // where the compositor writes it
-        if (alpha != nullptr || third != nullptr) {
-            found.alpha = alpha != nullptr ? *alpha : *third;
-            found.is_alpha_certain = alpha != nullptr;
+        auto const is_of_colours = lower_case(found.u.name).ends_with(".r"); // whose alpha is the picture's
+        auto const* const third = frame.find(prefix + (is_of_colours ? "UV.B" : "UV.Z")); // the compositor's
+        found.is_alpha_certain = alpha != nullptr && !is_of_colours;
+        if (found.is_alpha_certain || third != nullptr) {
+            found.alpha = found.is_alpha_certain ? *alpha : *third;
         }
     }
     found.position = find_position(frame, found.layer, found.layout);

@@ -476,9 +476,38 @@ TEST_SUITE("examples_support/exr_maps") {
         CHECK(named.notes.empty());
         std::filesystem::remove(folder / "shot_depth.0010.exr");
         CHECK(refusal(folder).find("/shot_uv_0010.exr: has the channels ") == 0);
-        CHECK(refusal(folder).find(", expected shot.Depth.Z as well (the view layer's Z pass)") != std::string::npos);
+        CHECK(refusal(folder).find(", expected Depth.Z as well (the view layer's Z pass)") != std::string::npos);
         write_exr(folder / "shot_depth_0010.exr", window(2, 2), window(2, 2), {{"V", {1, 1, 1, 1}}});
         CHECK(refusal(folder).find(": is [2, 2], expected [1, 2] as in shot_uv_0010.exr") != std::string::npos);
+    }
+
+    TEST_CASE("files of single passes of several layers are composited, their numbers may stand in front") {
+        scratch_folder const folder;
+        for (std::string const layer : {"near", "far"}) {
+            auto const depth = layer == "near" ? 2.0f : 3.0f;
+            write_blender(folder / ("0001_" + layer + "_uv.exr"), {{"X", {0.3f, 0.4f}}, {"Y", {0.7f, 0.6f}}});
+            write_blender(folder / ("0001_" + layer + "_depth.exr"), {{"V", {depth, layer == "near" ? 1e10f : 5.0f}}});
+            write_blender(folder / ("0001_" + layer + "_id.exr"), {{"V", {depth, 3}}});
+        }
+        auto const both = load_exr_sequence(folder.path());
+        CHECK(both.uv.frame_count() == 1);
+        CHECK(both.uv.object(0, 0, 0) == 2);
+        CHECK(both.uv.object(0, 0, 1) == 3);
+        CHECK(load_exr_sequence(folder.path(), {.layer = "far"}).depth.depth(0, 0, 0) == 3);
+    }
+
+    TEST_CASE("passes that were written as colours are read, whose alpha is no coverage") {
+        scratch_folder const folder;
+        write_blender(folder / "0001.exr", {{"uv.R", {0.3f, 0.2f}},
+                                            {"uv.G", {0.7f, 0.2f}},
+                                            {"uv.B", {1, 0}},
+                                            {"uv.A", {1, 1}},
+                                            {"depth.R", {2, 3}},
+                                            {"index.R", {4, 4}}});
+        auto const sequence = load_exr_sequence(folder.path());
+        CHECK(covered(sequence, 0, 4) == 1);
+        CHECK(sequence.uv.uv(0, 0, 0, 0) == 0.3f);
+        CHECK(sequence.notes.empty());
     }
 
     TEST_CASE("files of single passes may lie in folders of the passes' names") {
