@@ -224,14 +224,12 @@ inline std::vector<exr_frame_files> exr_frames_of(std::filesystem::path const& f
     return frames;
 }
 
-/// The number at the end of a frame's file name, as renderers number frames; nothing if there is none below 10^9.
-inline std::optional<std::size_t> frame_number(exr_frame_files const& frame) {
+/// The number at the end, or else in front, of a frame's file name, as renderers number frames; nothing if there is none below 10^9.
+inline std::optional<long> frame_number(exr_frame_files const& frame) {
     auto const stem = frame.front().path.stem().string();
     auto const number = detail::read_file_name(stem).number;
-    if (stem.empty() || !detail::is_digit(stem.back()) || number.size() > 9) {
-        return std::nullopt;
-    }
-    return number.empty() ? 0 : std::stoul(number);
+    auto const has_number = !number.empty() || stem.ends_with('0'); // leading zeros are not kept
+    return has_number && number.size() < 10 ? std::optional(number.empty() ? 0 : std::stol(number)) : std::nullopt;
 }
 
 } // namespace genrender::examples

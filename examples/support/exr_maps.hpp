@@ -27,11 +27,12 @@
 
 namespace genrender::examples {
 
-/// Which frames of a folder are read, by their places in its order.
+/// Which frames of a folder are read: of those between two numbers, every so many, and at most so many.
 struct exr_frame_range {
-    std::size_t first = 0;            ///< the first place
-    std::optional<std::size_t> count; ///< at most so many frames; none: to the end
-    std::size_t step = 1;             ///< every so many places, 1 or more
+    std::optional<long> start{};        ///< the least number at the end of a file's name
+    std::optional<long> end{};          ///< the largest one
+    std::size_t step = 1;               ///< 1 or more
+    std::optional<std::size_t> count{}; ///< none: to the end
 };
 
 /// How a folder of EXR files is read.
@@ -143,17 +144,27 @@ private:
     std::bitset<256> levels_;
 };
 
-/// The frames of a range. Throws value_error if there are none or the step is 0.
+/// The frames of a range. Throws value_error if there are none, a name has no number that is asked for, or the step is 0.
 inline std::vector<exr_frame_files> frames_in(std::vector<exr_frame_files> all, exr_frame_range const& range) {
     require_value(range.step > 0, "load_exr_sequence", "frames.step", range.step, "1 or more");
-    require_value(range.first < all.size(), "load_exr_sequence", "frames.first", range.first,
-                  ("below " + std::to_string(all.size()) + ", the number of frames in the folder").c_str());
     require_value(range.count != 0U, "load_exr_sequence", "frames.count", 0, "1 or more");
+    if (range.start || range.end) {
+        auto const last = all.back().front().path.filename().string();
+        std::erase_if(all, [&](exr_frame_files const& frame) {
+            auto const number = frame_number(frame);
+            require_value(number.has_value(), "load_exr_sequence", "frames.start",
+                          frame.front().path.filename().string(), "files whose names end with their frame's number");
+            return *number < range.start.value_or(0) || (range.end && *number > *range.end);
+        });
+        require_value(!all.empty(), "load_exr_sequence", "frames.start",
+                      (range.start ? std::to_string(*range.start) : "0") + " to " +
+                          (range.end ? std::to_string(*range.end) : "the end"),
+                      ("numbers of files, of which the last is " + last).c_str());
+    }
     std::vector<exr_frame_files> chosen;
-    for (auto i = range.first; i < all.size() && chosen.size() < range.count.value_or(all.size()); i += range.step) {
-        chosen.push_back(std::move(all[i]));
-        if (range.step >= all.size() - i) {
-            break;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (i % range.step == 0 && chosen.size() < range.count.value_or(all.size())) {
+            chosen.push_back(std::move(all[i]));
         }
     }
     return chosen;

@@ -11,6 +11,7 @@
 #include "render_output.hpp"
 #include "resident_memory.hpp"
 #include "run_report.hpp"
+#include "video_file.hpp"
 
 #include <genrender/baselines/pix2video.hpp>
 #include <genrender/baselines/tokenflow.hpp>
@@ -50,10 +51,11 @@ auto with_canonical_maps(render_options const& options, guidance_source const& s
                : use(to_uv_view(source.guidance.uv));
 }
 
-void run(render_options const& options, guidance_source const& source, picture_model& model,
+/// Renders, and writes everything but the last lines. Cuts the maps of `source` to what is shown.
+void run(render_options const& options, guidance_source& source, picture_model& model,
          std::optional<earlier_run> const& earlier, threaded_loop const& loop, stopwatch const& total) {
     // The denoiser is told the prompt and the depth of the whole animation.
-    auto const phi = model.network(source.guidance, source.image, loop);
+    auto const phi = model.network(source.guidance, source.extents.rendered, loop);
 
     render_result<float> result;
     auto const grown = resident_growth([&] {
@@ -71,18 +73,28 @@ void run(render_options const& options, guidance_source const& source, picture_m
     if (options.keeps_latents) {
         write_npy(options.out / "latents.npy", to_view(std::as_const(result.z)));
     }
-    auto const images = model.pictures(result.z, loop);
+    auto const images = with_extents(model.pictures(result.z, loop), source.extents.shown);
+    source.guidance = with_extents(std::move(source.guidance), source.extents.shown_maps());
+    write_frames(options.out / "frames", images, options.has_alpha ? &source.guidance.uv.coverage : nullptr,
+                 options.format);
     std::vector<rgb8_image> frames;
     for (std::size_t i = 0; i < images.shape()[0]; ++i) {
         frames.push_back(rgb_picture(to_view(images)[i]));
     }
-    write_pictures(options.out, source.guidance, frames);
+    write_pictures(options.out, source.guidance, frames, source.frames_per_second);
+    auto const video = options.out / "animation.mp4";
+    if (auto const ffmpeg = program_on_path("ffmpeg")) {
+        write_mp4(*ffmpeg, video, frames, source.frames_per_second);
+    } else {
+        std::filesystem::remove(video); // of an earlier run
+    }
     auto json = report_of(options, source, result.report, images);
     json["render_resident_bytes"] = grown ? nlohmann::ordered_json(*grown) : nlohmann::ordered_json(nullptr);
     json["seconds"] = seconds_of(result.report, total.seconds());
     write_text(options.out / "report.json", json.dump(2) + "\n");
     if (earlier) {
-        write_comparison(options.out, *earlier, frames, method_name(name_in(method_names, options.method)));
+        write_comparison(options.out, *earlier, frames, method_name(name_in(method_names, options.method)),
+                         source.frames_per_second);
     }
 }
 
@@ -90,7 +102,8 @@ void run(render_options const& options, guidance_source const& source, picture_m
 int plan(render_options const& options, guidance_source const& source, picture_model& model,
          threaded_loop const& loop) {
     std::optional<any_denoiser<float>> phi;
-    auto const weights = resident_growth([&] { phi.emplace(model.network(source.guidance, source.image, loop)); });
+    auto const weights =
+        resident_growth([&] { phi.emplace(model.network(source.guidance, source.extents.rendered, loop)); });
     auto timed = with_canonical_maps(
         options, source, [&](auto const& maps) { return plan_run(*phi, maps, options.settings, loop.threads()); });
     timed.weights_bytes = weights;
@@ -122,7 +135,7 @@ std::string advice(recommendation const& one) {
 /// Tells what the maps are good for, at the feature resolutions of the network's injected layers. The exit code.
 int check(render_options const& options, guidance_source const& source, picture_model& model,
           threaded_loop const& loop) {
-    auto const phi = model.network(source.guidance, source.image, loop); // asked for its layers only
+    auto const phi = model.network(source.guidance, source.extents.rendered, loop); // asked for its layers only
     std::vector<grid_extents> grids;
     for (auto const& site : phi.sites()) {
         if (options.settings.layers(site, 0) && std::find(grids.begin(), grids.end(), site.grid) == grids.end()) {
@@ -134,13 +147,6 @@ int check(render_options const& options, guidance_source const& source, picture_
     });
     std::cout << text_of(report, advice) << "picture: " << (options.out / "preflight.png").string() << "\n";
     return report.allows_run() ? 0 : 1;
-}
-
-/// Throws value_error unless the network can halve its latents as often as it does.
-void require_pixels(grid_extents image, std::size_t factor) {
-    auto const expected = "a multiple of " + std::to_string(factor) + " for this model";
-    require_value(image.height % factor == 0, "--size", "height", image.height, expected.c_str());
-    require_value(image.width % factor == 0, "--width", "width", image.width, expected.c_str());
 }
 
 /// Prints a sentence and gives the exit code.
@@ -173,12 +179,14 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
         }
         options.size = options.size > 0 ? options.size : model->usual_size().height;
         make_folder(options.out);
-        source = load_guidance(options, model->scale(), loop);
+        source = load_guidance(options, model->scale(), model->scale() * model->grid_divisor(), loop);
         source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
+        for (auto const& note : source.notes) {
+            std::cerr << "note: " << note << "\n";
+        }
         auto const frame_count = source.guidance.uv.frame_count();
         options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
         options.settings.noise.rays = source.rays;
-        require_pixels(source.image, model->scale() * model->grid_divisor());
         if (options.is_check) {
             return check(options, source, *model, loop);
         }
@@ -190,7 +198,7 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
             return plan(options, source, *model, loop);
         }
         if (!options.beside.empty()) {
-            earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
+            earlier = load_earlier_run(options.beside, options.out, frame_count, source.extents.shown);
         }
     } catch (no_run const& none) {
         return none.exit_code;
@@ -199,15 +207,15 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
     } catch (std::exception const& error) {
         return fail(program, 1, error);
     }
-    for (auto const& note : source.notes) {
-        std::cerr << "note: " << note << "\n";
-    }
     try {
         run(options, source, *model, earlier, loop, total);
     } catch (std::exception const& error) {
         return fail(program, 1, error);
     }
     std::cout << "animation:     " << (options.out / "animation.webp").string() << "\n"
+              << (std::filesystem::exists(options.out / "animation.mp4")
+                      ? "video:         " + (options.out / "animation.mp4").string() + "\n"
+                      : "video:         none, as ffmpeg is not on the PATH\n")
               << "contact sheet: " << (options.out / "contact_sheet.png").string() << "\n"
               << "report:        " << (options.out / "report.json").string() << "\n";
     return 0;

@@ -536,7 +536,7 @@ TEST_SUITE("examples_support/exr_maps") {
         auto const two = load_exr_sequence(folder.path(), {.frames = {.count = 2}});
         CHECK(two.uv.frame_count() == 2);
         CHECK(two.depth.depth(1, 0, 0) == 2);
-        auto const apart = load_exr_sequence(folder.path(), {.frames = {.first = 20, .step = 30}});
+        auto const apart = load_exr_sequence(folder.path(), {.frames = {.start = 20, .end = 50, .step = 30}});
         CHECK(apart.uv.frame_count() == 2);
         CHECK(apart.depth.depth(0, 0, 0) == 21);
         CHECK(apart.depth.depth(1, 0, 0) == 51);
@@ -549,15 +549,21 @@ TEST_SUITE("examples_support/exr_maps") {
             }
             return std::string("no error");
         };
-        CHECK(says({.first = 60}).find("frames.first") != std::string::npos);
+        CHECK(load_exr_sequence(folder.path(), {.frames = {.end = 1}}).uv.frame_count() == 2);
+        CHECK(says({.start = 60}) == "load_exr_sequence: frames.start is 60 to the end, expected numbers of files, of "
+                                     "which the last is f59.exr");
         CHECK(says({.count = 0}).find("frames.count") != std::string::npos);
         CHECK(says({.step = 0}).find("frames.step") != std::string::npos);
+        write_blender(folder / "zero.exr", blender_frame());
+        CHECK(says({.start = 1}) == "load_exr_sequence: frames.start is zero.exr, expected files whose names end with "
+                                    "their frame's number");
     }
 
     TEST_CASE("frames have the numbers at the end of their files' names") {
         auto const number = [](char const* name) { return examples::frame_number({{name, "", ""}}); };
-        CHECK(number("maps/shot2_0012.exr") == 12U);
-        CHECK(number("0000.exr") == 0U);
+        CHECK(number("maps/shot2_0012.exr") == 12);
+        CHECK(number("0012_uv.exr") == 12);
+        CHECK(number("0000.exr") == 0);
         CHECK(!number("shot.exr"));
         CHECK(!number("take_12345678901234567890.exr"));
     }
