@@ -14,6 +14,7 @@ import json
 import math
 import os
 import sys
+import traceback
 
 import bpy
 
@@ -21,7 +22,7 @@ bl_info = {
     "name": "Maps for genrender",
     "author": "the authors of genrender",
     "version": (1, 0, 0),
-    "blender": (4, 2, 0),
+    "blender": (3, 4, 0),
     "location": "Render Properties > Maps for genrender",
     "description": "Writes UV, depth, object index and rest position as EXR files",
     "category": "Render",
@@ -49,9 +50,15 @@ class Changes:
         return self
 
     def __exit__(self, *_):
+        failure = None
         for undo in reversed(self._undo):
-            undo()
+            try:
+                undo()
+            except Exception as error:  # the others are to be taken back all the same
+                failure = failure or error
         self._undo.clear()
+        if failure is not None:
+            raise failure
 
     def later(self, undo):
         """Calls `undo` at the end."""
@@ -281,7 +288,12 @@ def set_passes(layer, material, changes):
         variable.name = REST
 
         def undo():
-            layer.aovs.remove(layer.aovs[REST])
+            if hasattr(layer.aovs, "remove"):
+                layer.aovs.remove(layer.aovs[REST])
+            else:  # Blender 3
+                layer.active_aov_index = layer.aovs.find(REST)
+                with bpy.context.temp_override(view_layer=layer):
+                    bpy.ops.scene.view_layer_remove_aov()
             layer.active_aov_index = before
 
         changes.later(undo)
@@ -552,6 +564,9 @@ def main(arguments):
                            options.step, options.size)
     except (MapsError, RuntimeError, OSError) as error:
         print(f"genrender_maps.py: {error}", file=sys.stderr)
+        return 1
+    except Exception:  # Blender itself would go on and end with 0
+        traceback.print_exc()
         return 1
     for note in notes:
         print(note)

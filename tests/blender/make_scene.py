@@ -88,7 +88,7 @@ def main(path):
     scene.camera = camera
 
     # What an artist may have set, and maps must not have
-    scene.render.engine = "BLENDER_EEVEE_NEXT" if bpy.app.version[:2] < (5, 0) else "BLENDER_EEVEE"
+    scene.render.engine = "BLENDER_EEVEE_NEXT" if (4, 2) <= bpy.app.version[:2] < (5, 0) else "BLENDER_EEVEE"
     scene.render.use_motion_blur = True
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 384, 216, 50
     scene.render.fps = 30
