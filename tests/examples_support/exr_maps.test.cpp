@@ -36,10 +36,10 @@ void write_blender(std::filesystem::path const& path, std::vector<exr_test_chann
 }
 
 /// A file or folder beside the tests.
-std::filesystem::path data(std::string const& name) { return std::filesystem::path(GENRENDER_TEST_DATA) / name; }
+std::filesystem::path exr_data(std::string const& name) { return std::filesystem::path(GENRENDER_TEST_DATA) / name; }
 
 /// How many pixels of a frame are covered, by any object or by one.
-std::size_t covered(examples::exr_sequence const& sequence, std::size_t frame, std::optional<unsigned> object = {}) {
+std::size_t covered_in(examples::exr_sequence const& sequence, std::size_t frame, std::optional<unsigned> object = {}) {
     auto const size = sequence.uv.grid().size();
     std::size_t count = 0;
     for (auto i = frame * size; i < (frame + 1) * size; ++i) {
@@ -334,8 +334,8 @@ TEST_SUITE("examples_support/exr_maps") {
     }
 
     TEST_CASE("a surface without depth in a foreign sequence is refused with its place") {
-        CHECK_THROWS_WITH_AS(load_exr_sequence(data("field/nandepth")),
-                             (data("field/nandepth/f0000.exr").string() +
+        CHECK_THROWS_WITH_AS(load_exr_sequence(exr_data("field/nandepth")),
+                             (exr_data("field/nandepth/f0000.exr").string() +
                               ": at row 27, column 43 the depth is not a number, expected how far the surface is, or "
                               "1e10 for background")
                                  .c_str(),
@@ -343,22 +343,22 @@ TEST_SUITE("examples_support/exr_maps") {
     }
 
     TEST_CASE("a sequence that begins with empty frames is read") {
-        auto const sequence = load_exr_sequence(data("field/bgfirst"));
+        auto const sequence = load_exr_sequence(exr_data("field/bgfirst"));
         CHECK(sequence.uv.frame_count() == 4);
-        CHECK(covered(sequence, 0) == 0);
-        CHECK(covered(sequence, 1) == 0);
-        CHECK(covered(sequence, 2) > 4000);
-        CHECK(covered(sequence, 3) > 4000);
+        CHECK(covered_in(sequence, 0) == 0);
+        CHECK(covered_in(sequence, 1) == 0);
+        CHECK(covered_in(sequence, 2) > 4000);
+        CHECK(covered_in(sequence, 3) > 4000);
         CHECK(sequence.notes.empty());
     }
 
     TEST_CASE("the compositor's File Output node is read, with UV.Z as coverage") {
-        auto const sequence = load_exr_sequence(data("field/bl_fileout"));
+        auto const sequence = load_exr_sequence(exr_data("field/bl_fileout"));
         CHECK(sequence.uv.grid() == grid_extents{96, 128});
-        CHECK(covered(sequence, 0, 1) == 1485); // the same shot as the layer Character of bl_viewlayers
-        CHECK(covered(sequence, 0) == 1485);
+        CHECK(covered_in(sequence, 0, 1) == 1485); // the same shot as the layer Character of bl_viewlayers
+        CHECK(covered_in(sequence, 0) == 1485);
         CHECK(sequence.notes.empty());
-        auto const layer = load_exr_sequence(data("field/bl_viewlayers"), {.layer = "Character"});
+        auto const layer = load_exr_sequence(exr_data("field/bl_viewlayers"), {.layer = "Character"});
         CHECK(std::equal(sequence.uv.uv.begin(), sequence.uv.uv.end(), layer.uv.uv.begin()));
         CHECK(std::equal(sequence.depth.depth.begin(), sequence.depth.depth.end(), layer.depth.depth.begin()));
     }
@@ -372,11 +372,11 @@ TEST_SUITE("examples_support/exr_maps") {
                                             {"Depth.V", {2, 1e10f}}});
         auto const sequence = load_exr_sequence(folder.path());
         CHECK(sequence.uv.uv(0, 0, 0, 0) == 0.3f);
-        CHECK(covered(sequence, 0) == 1);
+        CHECK(covered_in(sequence, 0) == 1);
     }
 
     TEST_CASE("view layers are shown together by depth, or the one that is named") {
-        auto const folder = data("field/bl_viewlayers");
+        auto const folder = exr_data("field/bl_viewlayers");
         auto const both = load_exr_sequence(folder);
         CHECK(both.notes == std::vector<std::string>{
                                 "View layers Background and Character are shown together, the nearest surface of "
@@ -384,8 +384,8 @@ TEST_SUITE("examples_support/exr_maps") {
         auto const near = load_exr_sequence(folder, {.layer = "Character"});
         auto const far = load_exr_sequence(folder, {.layer = "Background"});
         CHECK(near.notes.empty());
-        CHECK(covered(near, 0, 1) == covered(near, 0));
-        CHECK(covered(far, 0, 2) == covered(far, 0));
+        CHECK(covered_in(near, 0, 1) == covered_in(near, 0));
+        CHECK(covered_in(far, 0, 2) == covered_in(far, 0));
         std::size_t wrong = 0;
         for (std::size_t i = 0; i < both.uv.coverage.size(); ++i) {
             auto const depth_of = [&](auto const& s) { // background is far
@@ -396,8 +396,8 @@ TEST_SUITE("examples_support/exr_maps") {
                      both.uv.object.data()[i] != nearest.uv.object.data()[i];
         }
         CHECK(wrong == 0);
-        CHECK(covered(both, 0, 1) > 0);
-        CHECK(covered(both, 0, 2) > covered(both, 0, 1));
+        CHECK(covered_in(both, 0, 1) > 0);
+        CHECK(covered_in(both, 0, 2) > covered_in(both, 0, 1));
         CHECK_THROWS_WITH_AS(load_exr_sequence(folder, {.layer = "Sky"}),
                              ((folder / "f0001.exr").string() +
                               ": has passes of the view layers Background, Character, expected those of Sky")
@@ -418,10 +418,10 @@ TEST_SUITE("examples_support/exr_maps") {
     }
 
     TEST_CASE("Cryptomatte tells objects apart where no index pass does") {
-        auto const sequence = load_exr_sequence(data("blender/cryptomatte"));
-        CHECK(covered(sequence, 0) == 151);
-        CHECK(covered(sequence, 0, 0xa8fce865) == 85); // what the manifest calls Cube
-        CHECK(covered(sequence, 0, 0xe5e9b0db) == 66); // and Sphere
+        auto const sequence = load_exr_sequence(exr_data("blender/cryptomatte"));
+        CHECK(covered_in(sequence, 0) == 151);
+        CHECK(covered_in(sequence, 0, 0xa8fce865) == 85); // what the manifest calls Cube
+        CHECK(covered_in(sequence, 0, 0xe5e9b0db) == 66); // and Sphere
         CHECK(sequence.manifest == R"({"Cube":"a8fce865","Light":"c77d43e5","Sphere":"e5e9b0db","object":"055ec73d"})");
         CHECK(sequence.notes ==
               std::vector<std::string>{"Objects are told apart by Cryptomatte, as there is no Object Index pass."});
@@ -447,11 +447,12 @@ TEST_SUITE("examples_support/exr_maps") {
     }
 
     TEST_CASE("files of single passes side by side are one frame") {
-        auto const sequence = load_exr_sequence(data("blender/side_by_side")); // as Blender's compositor writes them
+        auto const sequence =
+            load_exr_sequence(exr_data("blender/side_by_side")); // as Blender's compositor writes them
         CHECK(sequence.uv.frame_count() == 1);
-        CHECK(covered(sequence, 0) == 108);
-        CHECK(covered(sequence, 0, 3) == 108);
-        CHECK(sequence.files == std::vector<std::filesystem::path>{data("blender/side_by_side/uv_0001.exr")});
+        CHECK(covered_in(sequence, 0) == 108);
+        CHECK(covered_in(sequence, 0, 3) == 108);
+        CHECK(sequence.files == std::vector<std::filesystem::path>{exr_data("blender/side_by_side/uv_0001.exr")});
         CHECK(sequence.notes.empty());
 
         scratch_folder const folder;
@@ -505,7 +506,7 @@ TEST_SUITE("examples_support/exr_maps") {
                                             {"depth.R", {2, 3}},
                                             {"index.R", {4, 4}}});
         auto const sequence = load_exr_sequence(folder.path());
-        CHECK(covered(sequence, 0, 4) == 1);
+        CHECK(covered_in(sequence, 0, 4) == 1);
         CHECK(sequence.uv.uv(0, 0, 0, 0) == 0.3f);
         CHECK(sequence.notes.empty());
     }
@@ -519,7 +520,7 @@ TEST_SUITE("examples_support/exr_maps") {
         write_blender(folder / "depth" / "0001.exr", {{"V", {2, 1e10f}}});
         write_blender(folder / "index" / "0001.exr", {{"V", {4, 0}}});
         auto const sequence = load_exr_sequence(folder.path());
-        CHECK(covered(sequence, 0, 4) == 1);
+        CHECK(covered_in(sequence, 0, 4) == 1);
         CHECK(sequence.depth.depth(0, 0, 0) == 2);
     }
 
