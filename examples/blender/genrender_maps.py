@@ -267,6 +267,15 @@ def rest_material(changes):
     return material
 
 
+def leave_edit_mode(changes):
+    """Meshes cannot be changed while they are edited."""
+    active = bpy.context.view_layer.objects.active
+    if active is not None and active.mode != "OBJECT":
+        mode = active.mode
+        bpy.ops.object.mode_set(mode="OBJECT")
+        changes.later(lambda: bpy.ops.object.mode_set(mode=mode))
+
+
 # -- what the scene gets ---------------------------------------------------------------------------------------------------
 
 
@@ -411,6 +420,7 @@ def write_maps(scene, out, camera=None, view_layer=None, start=None, end=None, s
         changes.later(lambda: scene.frame_set(before[0], subframe=before[1]))
         if scene.render.engine != "CYCLES" and "CYCLES" not in engines():
             raise MapsError("Cycles is not there, expected Blender's add-on of that name to be enabled")
+        leave_edit_mode(changes)
         used = set_scene(scene, camera, view_layer, size, changes)
         make_room(out, frames)
         scene.frame_set(frames[0])
@@ -479,9 +489,6 @@ class GENRENDER_OT_write_maps(bpy.types.Operator):
 
     def execute(self, context):
         scene = context.scene
-        mode = context.mode
-        if mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
         manager = context.window_manager
         manager.progress_begin(0, 1000)
         try:
@@ -492,8 +499,6 @@ class GENRENDER_OT_write_maps(bpy.types.Operator):
             return {"CANCELLED"}
         finally:
             manager.progress_end()
-            if mode != "OBJECT":
-                bpy.ops.object.mode_set(mode="EDIT" if mode.startswith("EDIT") else mode)
         for note in notes:
             self.report({"INFO"}, note)
         self.report({"INFO"}, "Maps are in " + bpy.path.abspath(scene.genrender_maps_folder))

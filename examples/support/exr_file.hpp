@@ -55,6 +55,12 @@ public:
     /// The channels of all parts, in the file's order.
     std::vector<exr_channel> const& channels() const { return channels_; }
 
+    /// The channel of that name, or nullptr.
+    exr_channel const* find(std::string const& name) const {
+        auto const at = std::find_if(channels_.begin(), channels_.end(), [&](auto const& c) { return c.name == name; });
+        return at == channels_.end() ? nullptr : &*at;
+    }
+
     /// The texts of all headers by name, such as what renderers say about their passes.
     std::map<std::string, std::string> texts() const {
         std::map<std::string, std::string> result;
@@ -67,6 +73,11 @@ public:
             }
         }
         return result;
+    }
+
+    /// The values of one channel, as `planes` gives it.
+    std::vector<float> plane(exr_channel const& channel, float outside) const {
+        return std::move(planes(std::span(&channel, 1), outside).front());
     }
 
     /// The values of several channels [height, width] over the display window; what lies outside a channel's data window

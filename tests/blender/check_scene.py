@@ -110,12 +110,16 @@ def main(blend, folder):
     bpy.ops.wm.open_mainfile(filepath=os.path.abspath(blend))
     scene = bpy.context.scene
     second_layer(scene)
+    bpy.context.view_layer.objects.active = scene.objects["block"]
+    bpy.ops.object.mode_set(mode="EDIT")
     bpy.context.view_layer.update()
 
     before = snapshot()
+    check(before["block"]["mode"] == "EDIT", "the block is not being edited")
     notes = genrender_maps.write_maps(scene, folder, start=2, end=6, step=2, size=(64, 48))
     changed = differences(before, snapshot())
     check(not changed, f"the scene is not as it was: {changed}")
+    check(len(notes) == 2, notes)
     check(any(n.startswith("No UVs that span a texture come out of text ") for n in notes), f"text's UVs: {notes}")
     check(any("block" in n and "tetrahedron" in n for n in notes), f"new UVs are not said: {notes}")
 
