@@ -163,7 +163,8 @@ run_tests() {
 
 # What clang-tidy reads: all of the library by its umbrella, and programs as users write them.
 tidy_units="tests/house/umbrella_first.cpp examples/first_render.cpp examples/maps_and_noise.cpp
-    examples/your_own_correspondence.cpp examples/your_own_denoiser.cpp examples/blender_maps.cpp"
+    examples/your_own_correspondence.cpp examples/your_own_denoiser.cpp examples/blender_maps.cpp
+    examples/blender/compare_maps.cpp"
 
 slow_checks() {
     # shellcheck disable=SC2086 # a list of words

@@ -211,6 +211,7 @@ inline void note_layers(std::vector<std::string>& notes, exr_frame const& frame,
     };
     if (layers.size() > 1) {
         std::vector<std::string> names;
+        names.reserve(layers.size());
         for (auto const& layer : layers) {
             names.push_back(layer.layer.empty() ? "(without a name)" : layer.layer);
         }

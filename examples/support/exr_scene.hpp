@@ -6,8 +6,14 @@
 #include <genrender/core/index.hpp>
 #include <genrender/reference/checked_json.hpp>
 
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -16,13 +22,30 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace genrender::examples {
+
+/// A perspective camera of one frame.
+struct exr_camera {
+    glm::dmat3 to_world{1}; ///< its axes: right, up and backwards
+    double x_scale = 1; ///< x / -z of the image's right border is (1 + x_shift) / x_scale, of the left (-1 + x_shift)
+    double y_scale = 1; ///< the same of its upper border
+    double x_shift = 0;
+    double y_shift = 0;
+
+    /// Where an image position looks, each of its coordinates 0 to 1 from the upper left corner; in the world, of any
+    /// length.
+    glm::dvec3 direction(double row, double column) const {
+        return to_world * glm::dvec3((2 * column - 1 + x_shift) / x_scale, (1 - 2 * row + y_shift) / y_scale, -1);
+    }
+};
 
 /// What is known of the scene that maps show.
 struct exr_scene {
     std::optional<double> frames_per_second;      ///< of the files as they follow each other, above 0
     std::string camera;                           ///< its name; empty if nobody says
+    std::map<long, exr_camera> cameras;           ///< by the files' numbers, where they are perspective ones
     std::map<std::uint32_t, std::string> objects; ///< names by the maps' object indices
 };
 
@@ -36,10 +59,55 @@ inline std::optional<std::uint32_t> whole_number(std::string const& text, int ba
     return error == std::errc() && rest == end && !text.empty() ? std::optional(number) : std::nullopt;
 }
 
+/// A matrix of four rows, or nothing for what is none.
+inline std::optional<std::array<std::array<double, 4>, 4>> matrix_of(nlohmann::json const& json) {
+    std::array<std::array<double, 4>, 4> matrix{};
+    auto const is_four = [](nlohmann::json const& list) { return list.is_array() && list.size() == 4; };
+    if (!is_four(json) || !std::all_of(json.begin(), json.end(), is_four)) {
+        return std::nullopt;
+    }
+    for (std::size_t row = 0; row < 4; ++row) {
+        for (std::size_t column = 0; column < 4; ++column) {
+            auto const& value = json[row][column];
+            if (!value.is_number() || !std::isfinite(value.get<double>())) {
+                return std::nullopt;
+            }
+            matrix[row][column] = value.get<double>();
+        }
+    }
+    return matrix;
+}
+
+/// The camera of one of camera.frames, nothing if it is no perspective one. Throws through `require`.
+inline std::optional<std::pair<long, exr_camera>> camera_of(nlohmann::json const& json, auto const& require) {
+    auto const has = [&](char const* key) { return json.is_object() && json.contains(key); };
+    require(has("frame") && json["frame"].is_number_integer() && has("camera_to_world") && has("projection"),
+            "camera.frames", json, "entries with frame, camera_to_world and projection");
+    auto const place = matrix_of(json["camera_to_world"]);
+    auto const projection = matrix_of(json["projection"]);
+    require(place && projection, "camera.frames", json, "matrices of 4 rows of 4 numbers");
+    auto const& p = *projection;
+    if (p[3][2] != -1 || p[3][3] != 0 || !(p[0][0] > 0) || !(p[1][1] > 0)) {
+        return std::nullopt;
+    }
+    exr_camera camera;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            camera.to_world[column][row] = (*place)[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+        }
+    }
+    camera.x_scale = p[0][0];
+    camera.y_scale = p[1][1];
+    camera.x_shift = p[0][2];
+    camera.y_shift = p[1][2];
+    return std::pair(json["frame"].get<long>(), camera);
+}
+
 } // namespace detail
 
 /// The scene.json of `folder`, or nothing where there is none. Throws file_error that names the file and the key for a
-/// text that is no JSON object, a frame rate or step that is not above 0, and objects that are not names by index.
+/// text that is no JSON object, a frame rate or step that is not above 0, cameras without place or projection, and
+/// objects that are not names by index.
 inline std::optional<exr_scene> load_exr_scene(std::filesystem::path const& folder) {
     auto const path = (folder / "scene.json").string();
     std::ifstream stream(path, std::ios::binary);
@@ -77,6 +145,13 @@ inline std::optional<exr_scene> load_exr_scene(std::filesystem::path const& fold
         require(camera.is_object() && camera.contains("name") && camera["name"].is_string(), "camera", camera,
                 "an object with a name");
         scene.camera = camera["name"].get<std::string>();
+        auto const frames = camera.value("frames", nlohmann::json::array());
+        require(frames.is_array(), "camera.frames", frames, "a list");
+        for (auto const& frame : frames) {
+            if (auto const found = detail::camera_of(frame, require)) {
+                scene.cameras.insert(*found);
+            }
+        }
     }
     if (json.contains("objects")) {
         auto const& objects = json["objects"];

@@ -27,6 +27,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -66,6 +67,25 @@ environment_rays rays_of(Animation const& scene, grid_extents grid) {
     return {[views = std::move(views)](frame_index i, double row, double column) {
         auto const& [plane, to_world] = views[i.value];
         auto const direction = to_world * glm::dvec3(plane.x_of(column), plane.y_of(row), -1);
+        return std::array<double, 3>{direction.x, direction.y, direction.z};
+    }};
+}
+
+/// The same of maps, where scene.json tells the cameras of their files' numbers. Throws value_error where it does not.
+inline environment_rays rays_of(exr_scene const& scene, std::vector<std::filesystem::path> const& files,
+                                grid_extents grid) {
+    std::vector<exr_camera> cameras;
+    for (auto const& file : files) {
+        auto const number = frame_number({{file, "", ""}});
+        auto const camera = number ? scene.cameras.find(*number) : scene.cameras.end();
+        require_value(
+            camera != scene.cameras.end(), "--background", "environment", "of EXR maps",
+            "fixed or independent: cameras come with --scene, --model and the scene.json of genrender_maps.py");
+        cameras.push_back(camera->second);
+    }
+    return {[cameras = std::move(cameras), grid](frame_index i, double row, double column) {
+        auto const direction = cameras[i.value].direction(row / static_cast<double>(grid.height),
+                                                          column / static_cast<double>(grid.width));
         return std::array<double, 3>{direction.x, direction.y, direction.z};
     }};
 }
@@ -119,8 +139,6 @@ inline guidance_source load_guidance(render_options const& options, std::size_t 
         source.frames_per_second = model.frames_per_second();
         draw(model, model.aspect());
     } else {
-        require_value(options.settings.noise.background != background_noise::environment, "--background", "environment",
-                      "of EXR maps", "fixed or independent: cameras come with --scene and --model");
         auto sequence = load_exr_sequence(options.maps,
                                           {.layer = options.view_layer,
                                            .frames = {.start = input.start, .end = input.end, .count = options.frames},
@@ -133,9 +151,11 @@ inline guidance_source load_guidance(render_options const& options, std::size_t 
         source.guidance.position = std::move(sequence.position);
         auto const& uv = source.guidance.uv;
         source.objects = names_in_manifest(sequence.manifest, sequence.files.front().string());
-        if (auto scene = load_exr_scene(options.maps)) {
-            source.frames_per_second = scene->frames_per_second.value_or(source.frames_per_second);
-            source.objects.merge(scene->objects);
+        auto scene = load_exr_scene(options.maps).value_or(exr_scene{});
+        source.frames_per_second = scene.frames_per_second.value_or(source.frames_per_second);
+        source.objects.merge(scene.objects);
+        if (options.settings.noise.background == background_noise::environment) {
+            source.rays = detail::rays_of(scene, sequence.files, uv.grid());
         }
         source.frames_per_second = input.frames_per_second.value_or(source.frames_per_second);
         source.extents = extents_over_maps(uv.grid(), options.size, options.width, multiple);

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <glm/geometric.hpp>
+
 using namespace genrender;
 using namespace genrender::tests;
 using examples::load_exr_scene;
@@ -26,6 +28,23 @@ TEST_SUITE("examples_support/exr_scene") {
         CHECK(!load_exr_scene(folder.path())->frames_per_second);
     }
 
+    TEST_CASE("perspective cameras are read by the files' numbers and look through each place of the image") {
+        scratch_folder const folder;
+        // Turned to look along x with z up; twice as wide as it is high; moved to the right by half the width
+        folder.write("scene.json", R"({"camera": {"name": "Eye", "frames": [
+            {"frame": 7, "camera_to_world": [[0, 0, -1, 5], [-1, 0, 0, 6], [0, 1, 0, 7], [0, 0, 0, 1]],
+             "projection": [[1, 0, 0.5, 0], [0, 2, 0, 0], [0, 0, -1, -0.2], [0, 0, -1, 0]]},
+            {"frame": 8, "camera_to_world": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+             "projection": [[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]}]}})");
+        auto const cameras = load_exr_scene(folder.path())->cameras;
+        REQUIRE(cameras.size() == 1); // that of frame 8 is orthographic
+        auto const& camera = cameras.at(7);
+        auto const same = [](glm::dvec3 a, glm::dvec3 b) { return glm::length(a - b) < 1e-12; };
+        CHECK(same(camera.direction(0.5, 0.25), {1, 0, 0}));
+        CHECK(same(camera.direction(0.5, 1), {1, -1.5, 0}));
+        CHECK(same(camera.direction(0, 0.25), {1, 0, 0.5}));
+    }
+
     TEST_CASE("a scene.json of another shape is refused with file and key") {
         scratch_folder const folder;
         auto const path = (folder / "scene.json").string();
@@ -43,6 +62,11 @@ TEST_SUITE("examples_support/exr_scene") {
         CHECK(refusal(R"({"frames_per_second": 0})") == path + ": frames_per_second is 0, expected a number above 0");
         CHECK(refusal(R"({"frames_per_second": 24, "step": -1})") == path + ": step is -1, expected a number above 0");
         CHECK(refusal(R"({"camera": 3})") == path + ": camera is 3, expected an object with a name");
+        CHECK(refusal(R"({"camera": {"name": "Eye", "frames": [{"frame": 1}]}})") ==
+              path + R"(: camera.frames is {"frame":1}, expected entries with frame, camera_to_world and projection)");
+        CHECK(refusal(R"({"camera": {"name": "Eye", "frames":
+                       [{"frame": 1, "camera_to_world": [[0]], "projection": 2}]}})")
+                  .find("expected matrices of 4 rows of 4 numbers") != std::string::npos);
         CHECK(refusal(R"({"objects": {"one": "Cube"}})") ==
               path + R"(: objects is {"one":"Cube"}, expected names by index)");
         CHECK(refusal(R"({"objects": {"1": 2}})") == path + R"(: objects is {"1":2}, expected names by index)");
