@@ -31,7 +31,7 @@ sh cmake/quickstart.sh WHAT
             virtual environments in build/engines (PyTorch is about 3 GB there)
   blender   a small rigged scene through Blender, as the bpy package of the Python index or of the Python that
             GENRENDER_BPY_PYTHON names: its maps, beside those that the library draws of the same triangles, and frames made
-            from them; that its scene stays as it was (build/blender; about 1.5 GB the first time)
+            from them; that its scene stays as it was (build/blender; about 1 GB the first time)
   gpu       on a machine with an NVIDIA GPU, in five minutes: the fused kernel of eq. 6 against the host's, its speed
             against a copy's, and a whole run of LibTorch on the GPU, with that kernel, against the processor's and against
             the same run in plain PyTorch on the GPU
@@ -295,7 +295,7 @@ blender() {
     install_packages $blender_packages
     mkdir -p build/blender
     if ! find_bpy; then
-        say "$bpy_python has no bpy, and the Python index none for its version ($("$bpy_python" --version 2>&1)); GENRENDER_BPY_PYTHON names another. Skipped: maps from Blender"
+        say "There is no bpy for $bpy_python (that of Blender 5.0 is for Python 3.11; GENRENDER_BPY_PYTHON names another Python). Skipped: maps from Blender"
         return
     fi
     say "Building the program and the comparison"
