@@ -112,17 +112,37 @@ def surfaces_of(scene):
             continue
         found[o.name_full] = o
         pending.extend(o.children)
-        instanced = o.instance_collection if o.instance_type == "COLLECTION" else None
-        if instanced is not None and instanced not in collections:
-            collections.append(instanced)
-            pending.extend(instanced.all_objects)
-        for modifier in o.modifiers:  # geometry nodes refer to objects and collections by inputs
-            for value in (modifier[k] for k in modifier.keys()) if modifier.type == "NODES" else ():
-                if isinstance(value, bpy.types.Object):
-                    pending.append(value)
-                elif isinstance(value, bpy.types.Collection):
-                    pending.extend(value.all_objects)
+        for instanced in instanced_by(o):
+            if isinstance(instanced, bpy.types.Object):
+                pending.append(instanced)
+            elif instanced is not None and instanced not in collections:
+                collections.append(instanced)
+                pending.extend(instanced.all_objects)
     return [found[name] for name in sorted(found) if found[name].type in SURFACES]
+
+
+def instanced_by(o):
+    """The objects and collections that an object shows as instances."""
+    if o.instance_type == "COLLECTION":
+        yield o.instance_collection
+    for system in o.particle_systems:
+        yield system.settings.instance_object
+        yield system.settings.instance_collection
+    groups = []
+    for modifier in o.modifiers:
+        if modifier.type == "NODES":
+            groups.append(modifier.node_group)
+            for key in modifier.keys():
+                if isinstance(modifier[key], (bpy.types.Object, bpy.types.Collection)):
+                    yield modifier[key]
+    for group in groups:  # grows
+        for node in group.nodes if group is not None else ():
+            inner = getattr(node, "node_tree", None)
+            if inner is not None and inner not in groups:
+                groups.append(inner)
+            for socket in node.inputs:
+                if socket.type in {"OBJECT", "COLLECTION"}:
+                    yield socket.default_value
 
 
 def number_objects(objects, changes, notes):
@@ -372,12 +392,12 @@ def camera_at(scene):
     projection = scene.camera.calc_matrix_camera(
         bpy.context.evaluated_depsgraph_get(), x=int(render.resolution_x * scale), y=int(render.resolution_y * scale),
         scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y)
-    is_perspective = projection[3][3] == 0
+    is_perspective = scene.camera.data.type == "PERSP"
     return {
         "frame": scene.frame_current,
         "camera": scene.camera.name,
         "camera_to_world": [list(row) for row in eye.matrix_world],
-        "projection": [list(row) for row in projection],
+        "projection": [list(row) for row in projection] if scene.camera.data.type != "PANO" else None,
         "vertical_fov": 2 * math.atan(1 / projection[1][1]) if is_perspective else None,
     }
 

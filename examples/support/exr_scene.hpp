@@ -83,6 +83,9 @@ inline std::optional<std::pair<long, exr_camera>> camera_of(nlohmann::json const
     auto const has = [&](char const* key) { return json.is_object() && json.contains(key); };
     require(has("frame") && json["frame"].is_number_integer() && has("camera_to_world") && has("projection"),
             "camera.frames", json, "entries with frame, camera_to_world and projection");
+    if (json["projection"].is_null()) { // a panorama
+        return std::nullopt;
+    }
     auto const place = matrix_of(json["camera_to_world"]);
     auto const projection = matrix_of(json["projection"]);
     require(place && projection, "camera.frames", json, "matrices of 4 rows of 4 numbers");

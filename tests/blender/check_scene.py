@@ -89,7 +89,7 @@ def refusal(scene, out, **options):
 
 
 def second_layer(scene):
-    """A second view layer, text, an instance of a collection, and a marker that binds the camera."""
+    """A second view layer, text, instances of a collection and of geometry nodes, and a marker that binds the camera."""
     text = bpy.data.objects.new("text", bpy.data.curves.new("text", "FONT"))
     text.data.body = "A"
     text.location = (-2, -2, 0.5)
@@ -102,6 +102,21 @@ def second_layer(scene):
     instance = bpy.data.objects.new("instance", None)
     instance.instance_type, instance.instance_collection, instance.location = "COLLECTION", hidden, (-2.5, 0, 0)
     scene.collection.objects.link(instance)
+    ball = bpy.data.objects.new("ball", bpy.data.objects["floor"].data.copy())
+    group = bpy.data.node_groups.new("scatter", "GeometryNodeTree")
+    if hasattr(group, "interface"):
+        group.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    else:  # Blender 3
+        group.outputs.new("NodeSocketGeometry", "Geometry")
+    info = group.nodes.new("GeometryNodeObjectInfo")
+    info.inputs["Object"].default_value = ball
+    info.inputs["As Instance"].default_value = True
+    group.links.new(info.outputs["Geometry"], group.nodes.new("NodeGroupOutput").inputs[0])
+    carrier = bpy.data.objects.new("carrier", bpy.data.meshes.new("carrier"))
+    carrier.location = (0, 3, 0)
+    carrier.rotation_euler = (1.5, 0, 0)
+    carrier.modifiers.new("scatter", "NODES").node_group = group
+    scene.collection.objects.link(carrier)
     scene.view_layers.new("Second")
     scene.timeline_markers.new("cut", frame=2).camera = scene.camera
 
@@ -130,7 +145,7 @@ def main(blend, folder):
     check([c["frame"] for c in told["camera"]["frames"]] == [2, 4, 6], "cameras are of other frames")
     check(told["camera"]["frames"][0]["camera_to_world"] != told["camera"]["frames"][1]["camera_to_world"],
           "the camera stands still")
-    check(sorted(told["objects"].values()) == ["bending column", "block", "floor", "tetrahedron", "text"],
+    check(sorted(told["objects"].values()) == ["ball", "bending column", "block", "carrier", "floor", "tetrahedron", "text"],
           told["objects"])
     check(told["view_layers"] == ["ViewLayer", "Second"], told["view_layers"])
 

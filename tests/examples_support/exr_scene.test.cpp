@@ -35,9 +35,11 @@ TEST_SUITE("examples_support/exr_scene") {
             {"frame": 7, "camera_to_world": [[0, 0, -1, 5], [-1, 0, 0, 6], [0, 1, 0, 7], [0, 0, 0, 1]],
              "projection": [[1, 0, 0.5, 0], [0, 2, 0, 0], [0, 0, -1, -0.2], [0, 0, -1, 0]]},
             {"frame": 8, "camera_to_world": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
-             "projection": [[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]}]}})");
+             "projection": [[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]},
+            {"frame": 9, "camera_to_world": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+             "projection": null}]}})");
         auto const cameras = load_exr_scene(folder.path())->cameras;
-        REQUIRE(cameras.size() == 1); // that of frame 8 is orthographic
+        REQUIRE(cameras.size() == 1); // that of frame 8 is orthographic, of frame 9 a panorama
         auto const& camera = cameras.at(7);
         auto const same = [](glm::dvec3 a, glm::dvec3 b) { return glm::length(a - b) < 1e-12; };
         CHECK(same(camera.direction(0.5, 0.25), {1, 0, 0}));
