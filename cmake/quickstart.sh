@@ -29,6 +29,9 @@ sh cmake/quickstart.sh WHAT
             engines into build/engines, compares their frames and prints one table, and what was skipped and why; those in
             Python and LibTorch are of the Python that GENRENDER_PEER_PYTHON names, where it has their packages, else of
             virtual environments in build/engines (PyTorch is about 3 GB there)
+  blender   a small rigged scene through Blender, as the bpy package of the Python index or of the Python that
+            GENRENDER_BPY_PYTHON names: its maps, beside those that the library draws of the same triangles, and frames made
+            from them; that its scene stays as it was (build/blender; about 1 GB the first time)
   gpu       on a machine with an NVIDIA GPU, in five minutes: the fused kernel of eq. 6 against the host's, its speed
             against a copy's, and a whole run of LibTorch on the GPU, with that kernel, against the processor's and against
             the same run in plain PyTorch on the GPU
@@ -50,6 +53,8 @@ bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev li
 test_packages="$demo_packages clang libclang-rt-dev doctest-dev libbenchmark-dev assimp-testmodels valgrind"
 engine_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
     nlohmann-json3-dev libutf8proc-dev doctest-dev python3-venv python3-dev"
+# What Blender's Python package is linked with.
+blender_packages="$demo_packages python3-venv libgl1 libsm6 libxext6 libxfixes3 libxi6 libxkbcommon0 libxrender1"
 # What reads the sources without compiling them. Another clang-format would break other lines.
 docs_packages="cmake doxygen"
 slow_check_packages="$test_packages $docs_packages clang-format-14 clang-tidy"
@@ -159,7 +164,8 @@ run_tests() {
 
 # What clang-tidy reads: all of the library by its umbrella, and programs as users write them.
 tidy_units="tests/house/umbrella_first.cpp examples/first_render.cpp examples/maps_and_noise.cpp
-    examples/your_own_correspondence.cpp examples/your_own_denoiser.cpp examples/blender_maps.cpp"
+    examples/your_own_correspondence.cpp examples/your_own_denoiser.cpp examples/blender_maps.cpp
+    examples/blender/compare_maps.cpp"
 
 slow_checks() {
     # shellcheck disable=SC2086 # a list of words
@@ -259,6 +265,58 @@ gpu() {
     build/engines/clients_gpu/libtorch/whole_run 64 128
 }
 
+# A Python with bpy, which is there for few versions of Python.
+find_bpy() {
+    if [ -n "${GENRENDER_BPY_PYTHON-}" ]; then
+        bpy_python=$GENRENDER_BPY_PYTHON
+    else
+        bpy_python=build/blender/venv/bin/python
+        base=$(command -v python3.11 || command -v python3)
+        if ! "$bpy_python" -c 'import bpy' 2>/dev/null; then
+            say "Fetching bpy"
+            if "$base" -m venv build/blender/venv; then
+                "$bpy_python" -m pip install -q 'bpy>=4.2' || true
+            fi
+        fi
+    fi
+    "$bpy_python" -c 'import bpy' 2>/dev/null
+}
+
+# Runs a script with bpy; what Blender says of its work goes to a file, which is shown where it fails.
+with_bpy() {
+    if ! "$bpy_python" "$@" >build/blender/log.txt 2>&1; then
+        tail -n 20 build/blender/log.txt >&2
+        stop "$1 failed."
+    fi
+    grep -E '^(check_scene.py: |Maps are in |[0-9]+ objects without UVs)' build/blender/log.txt || true
+}
+
+blender() {
+    # shellcheck disable=SC2086 # a list of words
+    install_packages $blender_packages
+    mkdir -p build/blender
+    if ! find_bpy; then
+        say "There is no bpy for $bpy_python (that of Blender 5.0 is for Python 3.11; GENRENDER_BPY_PYTHON names another Python). Skipped: maps from Blender"
+        return
+    fi
+    say "Building the program and the comparison"
+    cmake --preset demo
+    cmake --build build/demo --target generative_rendering compare_maps
+    say "Blender renders maps"
+    rm -rf build/blender/maps build/blender/check
+    with_bpy tests/blender/make_scene.py build/blender/shot.blend
+    with_bpy examples/blender/genrender_maps.py --blend build/blender/shot.blend --out build/blender/maps --size 256x192
+    with_bpy tests/blender/export_meshes.py build/blender/shot.blend 256 192 build/blender/meshes.txt
+    say "Beside the library's rasteriser"
+    build/demo/examples/compare_maps build/blender/maps build/blender/meshes.txt
+    say "Blender's scene is as it was"
+    with_bpy tests/blender/check_scene.py build/blender/shot.blend build/blender/check
+    say "Frames"
+    build/demo/examples/generative_rendering --maps build/blender/maps --size 96 --steps 10 \
+        --prompt "a red and white striped figure on green ground on a sunny day" --out build/blender/frames
+    ls build/blender/frames
+}
+
 docs() {
     # shellcheck disable=SC2086 # a list of words
     install_packages $docs_packages
@@ -282,6 +340,7 @@ case ${1-} in
         bench "$@"
         ;;
     engines) engines ;;
+    blender) blender ;;
     gpu) gpu ;;
     docs) docs ;;
     packages) # shellcheck disable=SC2086 # a list of words

@@ -11,11 +11,13 @@
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -29,6 +31,7 @@ struct exr_channel {
     std::string name_in_part;
     int part = 0;
     Imf::PixelType type = Imf::FLOAT;
+    std::size_t file = 0; ///< of several files of one frame, which
 };
 
 /// An open EXR file. Every failure of the EXR library leaves as a file_error that names the file and the library's
@@ -58,22 +61,28 @@ public:
         return at == channels_.end() ? nullptr : &*at;
     }
 
-    /// The names of all channels as text: `A, B, C`.
-    std::string channel_names() const {
-        std::string text;
-        for (auto const& channel : channels_) {
-            text += (text.empty() ? "" : ", ") + channel.name;
+    /// The texts of all headers by name, such as what renderers say about their passes.
+    std::map<std::string, std::string> texts() const {
+        std::map<std::string, std::string> result;
+        for (int part = 0; part < file_->parts(); ++part) {
+            auto const& header = file_->header(part);
+            for (auto entry = header.begin(); entry != header.end(); ++entry) {
+                if (auto const* const text = dynamic_cast<Imf::StringAttribute const*>(&entry.attribute())) {
+                    result.emplace(entry.name(), text->value());
+                }
+            }
         }
-        return text.empty() ? "no channels" : text;
+        return result;
     }
 
-    /// The values of one channel [height, width] over the display window; what lies outside the channel's data window
-    /// is `outside`. 16-bit floats and integers are converted. Throws file_error if the pixels cannot be read.
+    /// The values of one channel, as `planes` gives it.
     std::vector<float> plane(exr_channel const& channel, float outside) const {
         return std::move(planes(std::span(&channel, 1), outside).front());
     }
 
-    /// The values of several channels, each as `plane` gives it; channels of one part are decompressed together.
+    /// The values of several channels [height, width] over the display window; what lies outside a channel's data window
+    /// is `outside`. 16-bit floats and integers are converted; channels of one part are decompressed together. Throws
+    /// file_error if the pixels cannot be read.
     std::vector<std::vector<float>> planes(std::span<exr_channel const> channels, float outside) const {
         std::vector<std::vector<float>> result(channels.size(), std::vector<float>(grid().size(), outside));
         for (int part = 0; part < file_->parts(); ++part) {

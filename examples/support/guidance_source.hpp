@@ -4,6 +4,7 @@
 
 #include "../scenes/scenes.hpp"
 #include "exr_maps.hpp"
+#include "exr_scene.hpp"
 #include "frame_extents.hpp"
 #include "model_file.hpp"
 #include "padded_maps.hpp"
@@ -26,6 +27,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,6 +43,7 @@ struct guidance_source {
     frame_extents extents;
     double frames_per_second = 12; ///< of the moving pictures
     std::vector<std::string> notes;
+    std::map<std::uint32_t, std::string> objects; ///< names by the maps' object indices, where the input says
 };
 
 namespace detail {
@@ -47,16 +51,6 @@ namespace detail {
 /// Map pixels along one pixel of a rendered frame, for a model whose tokens have so many along a side: eight a token, and
 /// one a pixel at least, since errors are measured between the pixels of frames.
 inline std::size_t map_pixels(std::size_t scale) { return std::max<std::size_t>(1, 8 / scale); }
-
-/// The first `count` frames of a stack.
-template <class Tensor>
-Tensor first_frames(Tensor const& all, std::size_t count) {
-    auto shape = all.shape();
-    shape[0] = count;
-    auto result = Tensor::from_shape(shape);
-    std::copy_n(all.data(), result.size(), result.data());
-    return result;
-}
 
 /// The directions of the cameras' pixels.
 template <animation Animation>
@@ -73,6 +67,25 @@ environment_rays rays_of(Animation const& scene, grid_extents grid) {
     return {[views = std::move(views)](frame_index i, double row, double column) {
         auto const& [plane, to_world] = views[i.value];
         auto const direction = to_world * glm::dvec3(plane.x_of(column), plane.y_of(row), -1);
+        return std::array<double, 3>{direction.x, direction.y, direction.z};
+    }};
+}
+
+/// The same of maps, where scene.json tells the cameras of their files' numbers. Throws value_error where it does not.
+inline environment_rays rays_of(exr_scene const& scene, std::vector<std::filesystem::path> const& files,
+                                grid_extents grid) {
+    std::vector<exr_camera> cameras;
+    for (auto const& file : files) {
+        auto const number = frame_number({{file, "", ""}});
+        auto const camera = number ? scene.cameras.find(*number) : scene.cameras.end();
+        require_value(
+            camera != scene.cameras.end(), "--background", "environment", "of EXR maps",
+            "fixed or independent: cameras come with --scene, --model and the scene.json of genrender_maps.py");
+        cameras.push_back(camera->second);
+    }
+    return {[cameras = std::move(cameras), grid](frame_index i, double row, double column) {
+        auto const direction = cameras[i.value].direction(row / static_cast<double>(grid.height),
+                                                          column / static_cast<double>(grid.width));
         return std::array<double, 3>{direction.x, direction.y, direction.z};
     }};
 }
@@ -126,24 +139,23 @@ inline guidance_source load_guidance(render_options const& options, std::size_t 
         source.frames_per_second = model.frames_per_second();
         draw(model, model.aspect());
     } else {
-        require_value(options.settings.noise.background != background_noise::environment, "--background", "environment",
-                      "of EXR maps", "fixed or independent: cameras come with --scene and --model");
-        auto sequence = load_exr_sequence(options.maps);
+        auto sequence = load_exr_sequence(options.maps,
+                                          {.layer = options.view_layer,
+                                           .frames = {.start = input.start, .end = input.end, .count = options.frames},
+                                           .has_position = positions == position_pass::on});
         source.notes = std::move(sequence.notes);
         require_value(positions == position_pass::off || sequence.position.shape()[0] > 0, "--canonical", "position",
                       "not in the EXR files", "channels LAYER.Rest.X, Y and Z (or Blender's Position pass)");
         source.guidance.uv = std::move(sequence.uv);
         source.guidance.depth = std::move(sequence.depth);
-        auto& uv = source.guidance.uv;
-        auto& depth = source.guidance.depth;
-        auto const count = std::min(options.frames.value_or(uv.frame_count()), uv.frame_count());
-        uv.uv = detail::first_frames(uv.uv, count);
-        uv.object = detail::first_frames(uv.object, count);
-        uv.coverage = detail::first_frames(uv.coverage, count);
-        depth.depth = detail::first_frames(depth.depth, count);
-        depth.coverage = uv.coverage;
-        if (positions == position_pass::on) {
-            source.guidance.position = detail::first_frames(sequence.position, count);
+        source.guidance.position = std::move(sequence.position);
+        auto const& uv = source.guidance.uv;
+        source.objects = names_in_manifest(sequence.manifest, sequence.files.front().string());
+        auto scene = load_exr_scene(options.maps).value_or(exr_scene{});
+        source.frames_per_second = scene.frames_per_second.value_or(source.frames_per_second);
+        source.objects.merge(scene.objects);
+        if (options.settings.noise.background == background_noise::environment) {
+            source.rays = detail::rays_of(scene, sequence.files, uv.grid());
         }
         source.frames_per_second = input.frames_per_second.value_or(source.frames_per_second);
         source.extents = extents_over_maps(uv.grid(), options.size, options.width, multiple);

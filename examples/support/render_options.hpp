@@ -48,6 +48,7 @@ struct render_options {
     std::string scene;
     std::filesystem::path model;
     std::filesystem::path maps;
+    std::string view_layer; ///< of the maps; empty: all, the nearest surface of each pixel
     model_input_options input;
     prompt_options prompt;
     std::filesystem::path out;
@@ -147,6 +148,12 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         ->check(not_empty)
         ->type_name("DIR");
     input->require_option(1);
+    auto* const view_layer_option =
+        app.add_option("--view-layer", options.view_layer,
+                       "of --maps with several, the one to show (all, the nearest surface of each pixel)")
+            ->check(CLI::Validator(
+                [](std::string& text) { return text.empty() ? "is empty, expected a view layer's name" : ""; }, ""))
+            ->type_name("NAME");
     CLI::App unknown; // Options of models, where there are none: nobody parses with it.
     auto& of_models = kind == program_kind::of_models ? app : unknown;
     auto const* const prompt_option =
@@ -343,6 +350,9 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         if (options.is_plan &&
             (options.method == render_method::pix2video || options.method == render_method::tokenflow)) {
             throw CLI::ValidationError("--plan", "is of generative_rendering and per_frame");
+        }
+        if (view_layer_option->count() > 0 && options.maps.empty()) {
+            throw CLI::ValidationError("--view-layer", "is of --maps");
         }
         if (engine_option->count() > 0 &&
             (of_pipeline->count_all() > 1 || prompt_option->count() > 0 || !options.prompt.negative.empty() ||

@@ -86,6 +86,9 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["input"] = !options.scene.empty()   ? options.scene
                     : !options.model.empty() ? options.model.string()
                                              : options.maps.string();
+    if (!options.view_layer.empty()) {
+        told["view_layer"] = options.view_layer;
+    }
     told["prompt"] = options.prompt.text;
     told["negative_prompt"] = options.prompt.negative;
     told["guidance"] = options.prompt.guidance_scale ? nlohmann::ordered_json(*options.prompt.guidance_scale) : nullptr;
@@ -157,6 +160,9 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
             error ? nlohmann::ordered_json(*error) : nlohmann::ordered_json(nullptr);
     }
     json["frames_without_background"] = report.skipped_frames;
+    for (auto const& [index, name] : source.objects) {
+        json["objects"][std::to_string(index)] = name;
+    }
     json["notes"] = source.notes;
     return json;
 }

@@ -350,7 +350,9 @@ NB_MODULE(_genrender, m) {
         .def("sigma_of", &discrete_noise_schedule::sigma_of<double>, "t"_a, "The level of a time.");
 
     m.def("load_exr", &load_exr, "folder"_a, "layer"_a = "", "v_upwards"_a = nb::none(),
-          "Maps of a folder of EXR files, one a frame, as Blender writes them. Raises FileError.");
+          "Maps of a folder of EXR files, as Blender writes them: of all view layers, the nearest surface of each "
+          "pixel, or of "
+          "the one named. Raises FileError.");
     m.def("draw_keyframes", &keyframes, "count"_a, "frames"_a, "step"_a, "seed"_a = 0, "drawing"_a = "uniform",
           "The keyframes of a step, shuffled: a pure function of its arguments.");
     m.def("karras_schedule", &karras_schedule<double>, "steps"_a, "sigma_min"_a = 0.0292, "sigma_max"_a = 14.6146,

@@ -144,6 +144,11 @@ refuses("a size above the maps'" 2 "--size: height is 300, expected at most the 
     --maps ${sequence} --prompt dots ${out} --size 300)
 refuses("an environment of maps" 2 "--background: environment is of EXR maps" --maps ${sequence} --prompt dots ${out}
     --background environment)
+refuses("a view layer that is not there" 1 "has passes of the view layers ViewLayer, expected those of Sky"
+    --maps ${sequence} --prompt dots ${out} --view-layer Sky)
+refuses("a view layer of a scene" 2 "--view-layer: is of --maps" ${scene} --prompt dots ${out} --view-layer Sky)
+refuses("frames of maps that are not there" 2 "frames.start is 700 to the end, expected numbers of files"
+    --maps ${sequence} --prompt dots ${out} --start 700)
 refuses("a comparison with nothing" 1 "report.json: is no report of a run" ${scene} --prompt dots ${out}
     --beside ${broken})
 refuses("foreign weights" 1 "diffusion_pytorch_model.safetensors" ${scene} --prompt dots ${out} --frames 2
