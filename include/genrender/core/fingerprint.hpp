@@ -21,40 +21,7 @@ namespace genrender {
 /// differ in one word always give different ones, others do but for about one in 2^64. It tells what was changed by
 /// accident, and is no signature: who wants to can make data of any value.
 class fingerprint {
-public:
-    /// Takes in 64 bits.
-    constexpr void add(std::uint64_t word) { state_ = mixed(state_ ^ word); }
-    /// Takes in any other whole number, a bool or an enumerator.
-    template <class T>
-        requires((std::integral<T> || std::is_enum_v<T>)&&!std::same_as<T, std::uint64_t>)
-    constexpr void add(T value) { add(static_cast<std::uint64_t>(value)); }
-    /// Takes in the bits of a number: 0 and -0 differ.
-    constexpr void add(float value) { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
-    /// The same.
-    constexpr void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-    /// Takes in whether there is a value, and which.
-    template <class T>
-    constexpr void add(std::optional<T> const& value) {
-        add(value.has_value());
-        if (value) {
-            add(*value);
-        }
-    }
-    /// Takes in how many bytes there are, and all of them.
-    constexpr void add(std::string_view text) {
-        add(text.size());
-        add_all(text.data(), text.size());
-    }
-    /// The same.
-    constexpr void add(std::span<std::uint8_t const> bytes) {
-        add(bytes.size());
-        add_all(bytes.data(), bytes.size());
-    }
-
-    /// Of all that was taken in so far.
-    constexpr std::uint64_t value() const { return state_; }
-
-private:
+    // Stands first because compilers compute with what they have read.
     /// One to one, and every bit of x changes about half of those of the result.
     static constexpr std::uint64_t mixed(std::uint64_t x) {
         x ^= x >> 32;
@@ -101,6 +68,40 @@ private:
         }
     }
 
+public:
+    /// Takes in 64 bits.
+    constexpr void add(std::uint64_t word) { state_ = mixed(state_ ^ word); }
+    /// Takes in any other whole number, a bool or an enumerator.
+    template <class T>
+        requires((std::integral<T> || std::is_enum_v<T>)&&!std::same_as<T, std::uint64_t>)
+    constexpr void add(T value) { add(static_cast<std::uint64_t>(value)); }
+    /// Takes in the bits of a number: 0 and -0 differ.
+    constexpr void add(float value) { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
+    /// The same.
+    constexpr void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+    /// Takes in whether there is a value, and which.
+    template <class T>
+    constexpr void add(std::optional<T> const& value) {
+        add(value.has_value());
+        if (value) {
+            add(*value);
+        }
+    }
+    /// Takes in how many bytes there are, and all of them.
+    constexpr void add(std::string_view text) {
+        add(text.size());
+        add_all(text.data(), text.size());
+    }
+    /// The same.
+    constexpr void add(std::span<std::uint8_t const> bytes) {
+        add(bytes.size());
+        add_all(bytes.data(), bytes.size());
+    }
+
+    /// Of all that was taken in so far.
+    constexpr std::uint64_t value() const { return state_; }
+
+private:
     std::uint64_t state_ = 0x67656E72656E6465U;
 };
 
