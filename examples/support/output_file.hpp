@@ -5,6 +5,7 @@
 #include <genrender/core/error.hpp>
 
 #include <atomic>
+#include <cerrno>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include <string>
 #include <system_error>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace genrender::examples {
@@ -68,7 +70,28 @@ public:
         }
     }
 
+    /// The same, and what was written outlives a power failure: when it returns the disk has bytes and name. Throws as
+    /// above, and if the disk does not take them.
+    void commit_to_disk() {
+        sync(temporary_, O_WRONLY);
+        commit();
+        auto const folder = path_.parent_path();
+        sync(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+    }
+
 private:
+    static void sync(std::filesystem::path const& path, int how) {
+        auto const file = ::open(path.c_str(), how | O_CLOEXEC);
+        // Some file systems cannot do it for folders, which is no fault of what was written.
+        auto const is_done = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);
+        if (file >= 0) {
+            ::close(file);
+        }
+        if (!is_done) {
+            throw file_error(path.string() + ": cannot be brought to the disk, expected room and a disk that works");
+        }
+    }
+
     std::filesystem::path path_;
     std::filesystem::path temporary_;
 };
