@@ -59,21 +59,10 @@ public:
         }
     }
 
-    /// Removes it, and what is left of one that was being written when the program was killed.
+    /// Removes it, if it is there.
     void remove() const {
         std::error_code ignored;
         std::filesystem::remove(path_, ignored);
-        remove_parts();
-    }
-    /// Removes the latter alone.
-    void remove_parts() const {
-        std::error_code ignored;
-        for (auto const& entry : std::filesystem::directory_iterator(path_.parent_path(), ignored)) {
-            auto const name = entry.path().filename().string();
-            if (name.starts_with("." + path_.filename().string() + "-") && name.ends_with(".part")) {
-                std::filesystem::remove(entry.path(), ignored);
-            }
-        }
     }
 
     /// Bytes of the last one, and seconds that one took to write, on average.

@@ -6,6 +6,8 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +16,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 namespace genrender::examples {
@@ -95,6 +98,27 @@ private:
     std::filesystem::path path_;
     std::filesystem::path temporary_;
 };
+
+/// Removes from a folder what output_files of programs that were killed have left there; those of programs that run stay.
+inline void remove_left_parts(std::filesystem::path const& folder) {
+    std::error_code ignored;
+    for (auto const& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        // .NAME-PROCESS-COUNT.part
+        auto const name = entry.path().filename().string();
+        auto const count = name.rfind('-');
+        auto const process = count == std::string::npos ? count : name.rfind('-', count - 1);
+        if (!name.starts_with('.') || !name.ends_with(".part") || process == std::string::npos) {
+            continue;
+        }
+        auto const digits = name.substr(process + 1, count - process - 1);
+        pid_t id = 0;
+        auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), id);
+        if (error == std::errc() && end == digits.data() + digits.size() && id > 0 &&
+            (::kill(id, 0) != 0 && errno == ESRCH)) {
+            std::filesystem::remove(entry.path(), ignored);
+        }
+    }
+}
 
 /// Writes `bytes` as the whole of `path`, or leaves it as it was. Throws file_error if it cannot be written.
 inline void write_bytes(std::filesystem::path const& path, std::span<std::uint8_t const> bytes) {

@@ -6,6 +6,7 @@
 #include "guidance_source.hpp"
 #include "interruption.hpp"
 #include "npy_file.hpp"
+#include "output_file.hpp"
 #include "plan_output.hpp"
 #include "preflight_output.hpp"
 #include "progress_line.hpp"
@@ -84,7 +85,9 @@ class kept_steps {
 public:
     kept_steps(render_options const& options, picture_model const& model, any_loop loop)
         : options_(&options), model_(&model), loop_(std::move(loop)), file_(options.out) {
-        file_.remove_parts();
+        for (auto const& folder : {options.out, options.out / "frames", options.out / "maps"}) {
+            remove_left_parts(folder);
+        }
     }
 
     /// Told of every step that is done.

@@ -337,7 +337,7 @@ TEST_SUITE("pipeline/checkpoint") {
             return std::string("none");
         };
         auto const sentence = [](std::string const& others) {
-            return "render: resume is a checkpoint of a run with other " + others +
+            return "render: resume is a checkpoint of a run that differs in " + others +
                    ", expected one with the same settings, maps and model";
         };
         auto other = settings;

@@ -17,6 +17,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <istream>
 #include <limits>
 #include <optional>
@@ -54,7 +55,7 @@ void require_resumable(checkpoint<Real> const& from, run_fingerprint const& run,
     differs(from.run.maps != run.maps, "maps");
     differs(from.run.model != run.model, "model");
     if (!others.empty()) {
-        throw value_error("render: resume is a checkpoint of a run with other " + others +
+        throw value_error("render: resume is a checkpoint of a run that differs in " + others +
                           ", expected one with the same settings, maps and model");
     }
     auto const kernels = chosen_vector_target();
@@ -77,6 +78,19 @@ inline constexpr std::array<char, 16> checkpoint_magic{'g', 'e', 'n', 'r', 'e', 
 template <class Real>
 using bits_of = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
 
+/// A word whose bytes in memory stand with the lowest first, or back; on most machines itself.
+template <std::unsigned_integral Word>
+constexpr Word lowest_first(Word word) {
+    if constexpr (std::endian::native == std::endian::little) {
+        return word;
+    }
+    Word turned = 0;
+    for (std::size_t byte = 0; byte < sizeof(Word); ++byte) {
+        turned = static_cast<Word>(turned << 8 | (word >> (8 * byte) & 0xff));
+    }
+    return turned;
+}
+
 /// Writes numbers, lowest byte first, and takes in all that it wrote.
 class checkpoint_writer {
 public:
@@ -92,9 +106,9 @@ public:
         std::vector<char> block;
         for (std::size_t begin = 0; begin < count; begin += most) {
             block.resize(std::min(most, count - begin) * sizeof(Word));
-            for (std::size_t i = 0; i < block.size(); ++i) {
-                auto const word = std::bit_cast<Word>(values[begin + i / sizeof(Word)]);
-                block[i] = static_cast<char>(static_cast<unsigned char>(word >> (8 * (i % sizeof(Word)))));
+            for (std::size_t i = 0; i < block.size(); i += sizeof(Word)) {
+                auto const word = lowest_first(std::bit_cast<Word>(values[begin + i / sizeof(Word)]));
+                std::memcpy(block.data() + i, &word, sizeof(Word));
             }
             bytes(block);
         }
@@ -133,11 +147,8 @@ public:
             bytes(block);
             for (std::size_t i = 0; i < block.size(); i += sizeof(Word)) {
                 Word word = 0;
-                for (std::size_t byte = 0; byte < sizeof(Word); ++byte) {
-                    word = static_cast<Word>(word | static_cast<Word>(static_cast<unsigned char>(block[i + byte]))
-                                                        << (8 * byte));
-                }
-                take(word);
+                std::memcpy(&word, block.data() + i, sizeof(Word));
+                take(lowest_first(word));
             }
         }
     }
