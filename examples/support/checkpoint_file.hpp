@@ -62,7 +62,9 @@ public:
     /// Removes it, if it is there.
     void remove() const {
         std::error_code ignored;
-        std::filesystem::remove(path_, ignored);
+        if (exists()) {
+            std::filesystem::remove(path_, ignored);
+        }
     }
 
     /// Bytes of the last one, and seconds that one took to write, on average.

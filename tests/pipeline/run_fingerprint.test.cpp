@@ -29,7 +29,8 @@ TEST_SUITE("pipeline/run_fingerprint") {
 
     template <class Method = generative_rendering, class Map = map_of_uv>
     std::uint64_t settings_of(render_settings<float> const& settings) {
-        return fingerprint_of_settings<Map>(denoiser_of_8{.grid = {8, 8}}, settings, Method{}, 6, {32, 32});
+        denoiser_of_8 const phi{.grid = {8, 8}};
+        return fingerprint_of_settings<Map>(phi, settings, Method{}, 6, {32, 32});
     }
 
     using change = std::function<void(render_settings<float>&)>;
@@ -180,7 +181,9 @@ TEST_SUITE("pipeline/run_fingerprint") {
     }
     TEST_CASE("latents, branches, sites and key change that of the model") {
         denoiser_of_8 const phi{.grid = {8, 8}};
-        auto other_grid = denoiser_of_8{.grid = {4, 16}, .site_list = phi.site_list};
+        auto other_grid = phi;
+        other_grid.grid = {4, 16};
+        testing::analytic_denoiser<double> const other_scalar{.grid = {8, 8}};
         auto other_channels = phi;
         other_channels.channels = 4;
         auto other_branches = phi;
@@ -191,17 +194,16 @@ TEST_SUITE("pipeline/run_fingerprint") {
         other_width.site_list[2].channels += 1;
         auto fewer = phi;
         fewer.site_list.pop_back();
-        std::set<std::uint64_t> const seen{
-            fingerprint_of_model(phi, ""),
-            fingerprint_of_model(phi, "a red ball"),
-            fingerprint_of_model(phi, "a red ball "),
-            fingerprint_of_model(other_grid, ""),
-            fingerprint_of_model(other_channels, ""),
-            fingerprint_of_model(other_branches, ""),
-            fingerprint_of_model(other_name, ""),
-            fingerprint_of_model(other_width, ""),
-            fingerprint_of_model(fewer, ""),
-            fingerprint_of_model(testing::analytic_denoiser<double>{.grid = {8, 8}}, "")};
+        std::set<std::uint64_t> const seen{fingerprint_of_model(phi, ""),
+                                           fingerprint_of_model(phi, "a red ball"),
+                                           fingerprint_of_model(phi, "a red ball "),
+                                           fingerprint_of_model(other_grid, ""),
+                                           fingerprint_of_model(other_channels, ""),
+                                           fingerprint_of_model(other_branches, ""),
+                                           fingerprint_of_model(other_name, ""),
+                                           fingerprint_of_model(other_width, ""),
+                                           fingerprint_of_model(fewer, ""),
+                                           fingerprint_of_model(other_scalar, "")};
         CHECK(seen.size() == 10);
     }
 }

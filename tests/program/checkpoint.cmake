@@ -163,6 +163,18 @@ file(COPY_FILE ${FOLDER}/checkpoint ${folder}/checkpoint)
 file(REMOVE_RECURSE ${folder}/report.json)
 go_on(${folder} "a run whose report could not be written")
 
+# A checkpoint that cannot be written is said once, and the run goes on without.
+file(MAKE_DIRECTORY ${FOLDER}/without/checkpoint)
+execute_process(COMMAND ${PROGRAM} ${run} --out ${FOLDER}/without --quiet OUTPUT_QUIET ERROR_VARIABLE error
+    RESULT_VARIABLE code)
+string(REGEX MATCHALL "note: [^\n]*checkpoint: cannot be replaced" notes "${error}")
+list(LENGTH notes notes)
+if(NOT code EQUAL 0 OR NOT notes EQUAL 1)
+    message(FATAL_ERROR "a run without room for its checkpoint ends with ${code} and ${notes} notes, expected 0 and 1:\n${error}")
+endif()
+file(REMOVE_RECURSE ${FOLDER}/without/checkpoint)
+require_whole(${FOLDER}/without "a run without room for its checkpoint")
+
 # -- looked at ---------------------------------------------------------------------------------------------------------
 # The estimates of the last step are the frames.
 execute_process(COMMAND ${PROGRAM} ${run} --out ${FOLDER}/looked_at --preview 3 --quiet OUTPUT_QUIET
