@@ -13,15 +13,17 @@ using namespace genrender;
 
 int main(int argc, char** argv) try {
     if (argc < 3) {
-        std::fprintf(stderr,
-                     "blender_maps SCENE FOLDER [FRAMES] [PIXELS]: scenes are camera_rotation, bouncing_balls and "
-                     "walking_figure\n");
+        std::fprintf(
+            stderr,
+            "blender_maps SCENE FOLDER [FRAMES] [HEIGHT] [WIDTH]: scenes are camera_rotation, bouncing_balls and "
+            "walking_figure\n");
         return 2;
     }
     std::size_t const frames = argc > 3 ? std::stoul(argv[3]) : 8;
-    std::size_t const pixels = argc > 4 ? std::stoul(argv[4]) : 256;
+    std::size_t const height = argc > 4 ? std::stoul(argv[4]) : 256;
+    std::size_t const width = argc > 5 ? std::stoul(argv[5]) : height;
     auto const guidance =
-        rasterize(scenes::make_scene(argv[1], frames), {pixels, pixels}, threaded_loop(), position_pass::on);
+        rasterize(scenes::make_scene(argv[1], frames), {height, width}, threaded_loop(), position_pass::on);
 
     // Channels ViewLayer.UV.U/V/A, ViewLayer.Depth.Z, ViewLayer.IndexOB.X and the rest position as
     // ViewLayer.Rest.X/Y/Z, which Blender writes as an output variable of a shader, in 32 bits; v upwards, background

@@ -4,7 +4,9 @@
 
 #include "../scenes/scenes.hpp"
 #include "exr_maps.hpp"
+#include "frame_extents.hpp"
 #include "model_file.hpp"
+#include "padded_maps.hpp"
 #include "render_options.hpp"
 
 #include <genrender/scene/rasterizer.hpp>
@@ -21,8 +23,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,9 +35,10 @@ namespace genrender::examples {
 
 /// Guidance maps, the extents of the frames to render from them, and what is worth knowing about them.
 struct guidance_source {
-    rendered_guidance guidance;
-    environment_rays rays; ///< of the scene's cameras; none with maps
-    grid_extents image;
+    rendered_guidance guidance; ///< of the extents that the network renders
+    environment_rays rays;      ///< of the scene's cameras; none with maps
+    frame_extents extents;
+    double frames_per_second = 12; ///< of the moving pictures
     std::vector<std::string> notes;
 };
 
@@ -72,13 +77,6 @@ environment_rays rays_of(Animation const& scene, grid_extents grid) {
     }};
 }
 
-/// Whole frames of `size` pixels of height that show maps of `grid`. Throws value_error if pixels would be cut.
-inline grid_extents image_extents(grid_extents grid, std::size_t size) {
-    require_value(size <= grid.height && grid.height % size == 0 && grid.width % (grid.height / size) == 0, "--size",
-                  "height", size, ("a divisor of the maps' " + extents_text({grid.height, grid.width})).c_str());
-    return {size, grid.width / (grid.height / size)};
-}
-
 inline void add_notes_on(std::vector<std::string>& notes, uv_report const& report) {
     if (report.out_of_range > 0) {
         notes.push_back(std::to_string(report.out_of_range) + " of " + std::to_string(report.covered) +
@@ -91,33 +89,42 @@ inline void add_notes_on(std::vector<std::string>& notes, uv_report const& repor
 
 } // namespace detail
 
-/// The guidance that the options ask for, for a model whose tokens have `scale` pixels along a side. Throws file_error for files that cannot be used, value_error for options that
-/// do not fit what is read.
-inline guidance_source load_guidance(render_options const& options, std::size_t scale, any_loop const& loop) {
+/// The guidance that the options ask for, for a model whose tokens have `scale` pixels along a side and that renders whole
+/// multiples of `multiple` pixels. Throws file_error for files that cannot be used, value_error for options that do not
+/// fit what is read.
+inline guidance_source load_guidance(render_options const& options, std::size_t scale, std::size_t multiple,
+                                     any_loop const& loop) {
     guidance_source source;
-    auto const frames = options.frames.value_or(24);
-    source.image = {options.size, options.width.value_or(options.size)};
-    auto const map_pixels = detail::map_pixels(scale);
-    grid_extents const map{map_pixels * source.image.height, map_pixels * source.image.width};
     auto const positions = options.correspondence.coordinates() == canonical_coordinates::position ? position_pass::on
                                                                                                    : position_pass::off;
-    // Maps of 18 bytes a pixel, 30 with rest positions; a machine that has not as much would be brought down by its own
-    // kindness.
-    auto const bytes = static_cast<double>(frames) * static_cast<double>(map.height) * static_cast<double>(map.width) *
-                       (positions == position_pass::on ? 30 : 18);
-    auto const memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-    require_value(!options.maps.empty() || bytes < memory / 2, "--size", "maps", std::to_string(bytes / 1e9) + " GB",
-                  "less than half of the machine's memory: fewer --frames or a smaller --size");
-    auto const draw = [&](auto const& animation) {
-        source.guidance = rasterize(animation, map, loop, positions);
-        source.rays = detail::rays_of(animation, map);
+    auto const& input = options.input;
+    auto const draw = [&](auto const& animation, float aspect) {
+        auto const width = static_cast<std::size_t>(std::lround(static_cast<float>(options.size) * aspect));
+        auto& extents = source.extents;
+        extents = extents_of_frames({options.size, options.width.value_or(std::max<std::size_t>(1, width))}, multiple,
+                                    detail::map_pixels(scale));
+        // Maps of 18 bytes a pixel, 30 with rest positions; a machine that has not as much would be brought down by its
+        // own kindness.
+        auto const bytes = static_cast<double>(animation.frame_count()) * static_cast<double>(extents.maps().height) *
+                           static_cast<double>(extents.maps().width) * (positions == position_pass::on ? 30 : 18);
+        auto const memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+        require_value(bytes < memory / 2, "--size", "maps", std::to_string(bytes / 1e9) + " GB",
+                      "less than half of the machine's memory: fewer --frames or a smaller --size");
+        source.guidance = rasterize(animation, extents.shown_maps(), loop, positions);
+        source.rays = detail::rays_of(animation, extents.shown_maps());
     };
     if (!options.scene.empty()) {
-        draw(scenes::make_scene(options.scene, frames));
+        draw(scenes::make_scene(options.scene, options.frames.value_or(24)), 1);
+        source.frames_per_second = input.frames_per_second.value_or(source.frames_per_second);
     } else if (!options.model.empty()) {
-        auto const model = load_model(options.model, {.frames = frames});
+        std::optional<float> aspect;
+        if (options.width) {
+            aspect = static_cast<float>(*options.width) / static_cast<float>(options.size);
+        }
+        auto const model = load_model(options.model, input.of_model(options.frames, aspect));
         source.notes = lines_of(model.report());
-        draw(model);
+        source.frames_per_second = model.frames_per_second();
+        draw(model, model.aspect());
     } else {
         require_value(options.settings.noise.background != background_noise::environment, "--background", "environment",
                       "of EXR maps", "fixed or independent: cameras come with --scene and --model");
@@ -138,10 +145,12 @@ inline guidance_source load_guidance(render_options const& options, std::size_t 
         if (positions == position_pass::on) {
             source.guidance.position = detail::first_frames(sequence.position, count);
         }
-        source.image = detail::image_extents(uv.grid(), options.size);
-        auto const width = options.width.value_or(source.image.width);
-        require_value(width == source.image.width, "--width", "width", width,
-                      (std::to_string(source.image.width) + ", as the maps have it").c_str());
+        source.frames_per_second = input.frames_per_second.value_or(source.frames_per_second);
+        source.extents = extents_over_maps(uv.grid(), options.size, options.width, multiple);
+    }
+    source.guidance = with_extents(std::move(source.guidance), source.extents.maps());
+    if (auto note = note_on(source.extents, options.size); !note.empty()) {
+        source.notes.push_back(std::move(note));
     }
     detail::add_notes_on(source.notes, inspect(to_uv_view(source.guidance.uv)));
     // Texels have nowhere else to go; a footprint tells the tiles of a repeated texture apart.

@@ -11,7 +11,9 @@
 #include <assimp/camera.h>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -127,6 +129,25 @@ inline std::size_t count_seen(camera const& eye, std::span<glm::vec3 const> poin
         auto const p = glm::vec3(eye.view * glm::vec4(point, 1));
         return -p.z > eye.near_distance && std::abs(p.y) <= -p.z * t_y && std::abs(p.x) <= -p.z * t_y * aspect;
     }));
+}
+
+/// A model that fills less of a picture is not what the picture is of.
+inline constexpr double least_filled_share = 0.02;
+
+/// Share of the image, in [0, 1], that the upright rectangle around the points in front of the eye fills.
+inline double filled_share(camera const& eye, std::span<glm::vec3 const> points, float aspect) {
+    auto const t_y = std::tan(eye.vertical_fov / 2);
+    glm::vec2 low(1), high(-1);
+    for (auto const& point : points) {
+        auto const p = glm::vec3(eye.view * glm::vec4(point, 1));
+        if (-p.z > eye.near_distance) {
+            glm::vec2 const at(p.x / (-p.z * t_y * aspect), p.y / (-p.z * t_y));
+            low = glm::min(low, glm::clamp(at, -1.0f, 1.0f));
+            high = glm::max(high, glm::clamp(at, -1.0f, 1.0f));
+        }
+    }
+    auto const extent = glm::max(high - low, glm::vec2(0));
+    return static_cast<double>(extent.x * extent.y / 4);
 }
 
 } // namespace genrender::examples

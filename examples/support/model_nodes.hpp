@@ -108,6 +108,11 @@ inline void morph_weights_at(aiMeshMorphAnim const& channel, double time, std::v
     }
 }
 
+/// Ticks a second of an animation's keys; 25 where the file says nothing.
+inline double ticks_per_second(aiAnimation const& animation) {
+    return animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 25.0;
+}
+
 /// First and last time of the keys of an animation, in ticks; its stated duration if it has no keys at two times.
 inline std::pair<double, double> key_times(aiAnimation const& animation) {
     auto begin = std::numeric_limits<double>::max();
@@ -133,12 +138,22 @@ inline std::pair<double, double> key_times(aiAnimation const& animation) {
 /// All nodes of a scene, parents before children. Refers to the scene, which must outlive it.
 class model_nodes {
 public:
-    /// `animation` may be nullptr; `to_y_up` is put before the root.
-    model_nodes(aiScene const& scene, aiAnimation const* animation, glm::mat4 const& to_y_up) : to_y_up_(to_y_up) {
+    /// At rest; `to_y_up` is put before the root.
+    model_nodes(aiScene const& scene, glm::mat4 const& to_y_up) : to_y_up_(to_y_up) {
         list(*scene.mRootNode, std::nullopt);
-        for (unsigned i = 0; animation != nullptr && i < animation->mNumChannels; ++i) {
-            if (auto const node = find(animation->mChannels[i]->mNodeName)) {
-                nodes_[*node].channel = animation->mChannels[i];
+    }
+
+    /// Moved by these animations from now on, by the last one that names a node.
+    void play(std::span<aiAnimation const* const> animations) {
+        for (auto& entry : nodes_) {
+            entry.channel = nullptr;
+        }
+        for (auto const* const animation : animations) {
+            for (unsigned i = 0; i < animation->mNumChannels; ++i) {
+                if (auto const node = find(animation->mChannels[i]->mNodeName)) {
+                    nodes_[*node].channel = animation->mChannels[i];
+                    nodes_[*node].ticks_per_second = ticks_per_second(*animation);
+                }
             }
         }
     }
@@ -152,14 +167,14 @@ public:
         return at == by_name_.end() ? std::nullopt : std::optional(at->second);
     }
 
-    /// Each node's space to the world's at `time` in ticks; without an animation at any time.
-    std::vector<glm::mat4> to_world(double time) const {
+    /// Each node's space to the world's at a time in seconds; without an animation at any time.
+    std::vector<glm::mat4> to_world(double seconds) const {
         std::vector<glm::mat4> result;
         result.reserve(nodes_.size());
         for (auto const& entry : nodes_) {
-            auto const local = entry.channel != nullptr
-                                   ? transform_at(*entry.channel, entry.source->mTransformation, time)
-                                   : to_glm(entry.source->mTransformation);
+            auto const local = entry.channel != nullptr ? transform_at(*entry.channel, entry.source->mTransformation,
+                                                                       seconds * entry.ticks_per_second)
+                                                        : to_glm(entry.source->mTransformation);
             result.push_back((entry.parent ? result[*entry.parent] : to_y_up_) * local);
         }
         return result;
@@ -170,11 +185,12 @@ private:
         aiNode const* source = nullptr;
         std::optional<std::size_t> parent;
         aiNodeAnim const* channel = nullptr;
+        double ticks_per_second = 1;
     };
 
     void list(aiNode const& node, std::optional<std::size_t> parent) {
         auto const index = nodes_.size();
-        nodes_.push_back({&node, parent, nullptr});
+        nodes_.push_back({&node, parent});
         by_name_.emplace(node.mName.C_Str(), index);
         for (unsigned i = 0; i < node.mNumChildren; ++i) {
             list(*node.mChildren[i], index);

@@ -18,6 +18,7 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -30,7 +31,7 @@ namespace genrender::examples {
 
 /// Which texture coordinates a model gets.
 enum class model_uvs {
-    from_file, ///< the file's first set; a mesh without one gets an atlas
+    from_file, ///< a set of the file's; a mesh without it gets an atlas
     atlas      ///< an atlas of its triangles for every mesh: nothing overlaps
 };
 
@@ -40,14 +41,14 @@ class model_part {
 public:
     /// Throws file_error that begins with `path` if positions are not finite or triangles name vertices that do not
     /// exist.
-    model_part(std::string const& path, aiMesh const& source, model_nodes const& nodes, std::size_t node,
-               aiAnimation const* animation, model_uvs uvs)
-        : node_(node) {
+    model_part(std::string const& path, aiMesh const& source, model_nodes const& nodes, std::size_t node, model_uvs uvs,
+               std::size_t uv_set = 0)
+        : node_(node), names_{nodes.node(node).mName.C_Str(), source.mName.C_Str()} {
         report_.name = nodes.node(node).mName.length > 0 ? nodes.node(node).mName.C_Str() : source.mName.C_Str();
         report_.name = report_.name.empty() ? "unnamed" : report_.name;
-        auto surface = surface_of(path, source, uvs);
+        auto surface = surface_of(path, source, uvs, uv_set);
         read_joints(source, nodes);
-        read_morph_targets(source, nodes, animation);
+        read_morph_targets(source);
         if (report_.has_made_uvs) {
             auto atlas = make_triangle_atlas(surface);
             surface = std::move(atlas.surface);
@@ -59,13 +60,29 @@ public:
 
     model_object_report const& report() const { return report_; }
 
-    /// The part with its nodes at `to_world`, `time` ticks into the animation.
-    posed_object at(object_index object, std::span<glm::mat4 const> to_world, double time) const {
+    /// Morphed by these animations from now on, by the last one that names its node or mesh.
+    void play(std::span<aiAnimation const* const> animations) {
+        morph_channel_ = nullptr;
+        for (auto const* const animation : animations) {
+            for (unsigned i = 0; i < animation->mNumMorphMeshChannels; ++i) {
+                // Called after the node or the mesh, in some formats with a number behind a star
+                std::string const full_name = animation->mMorphMeshChannels[i]->mName.C_Str();
+                auto const name = full_name.substr(0, full_name.find('*'));
+                if (name == names_[0] || name == names_[1]) {
+                    morph_channel_ = animation->mMorphMeshChannels[i];
+                    morph_ticks_per_second_ = ticks_per_second(*animation);
+                }
+            }
+        }
+    }
+
+    /// The part with its nodes at `to_world`, at a time in seconds.
+    posed_object at(object_index object, std::span<glm::mat4 const> to_world, double seconds) const {
         // Add the morph targets
         auto positions = surface_->positions;
         auto weights = morph_weights_;
         if (morph_channel_ != nullptr) {
-            morph_weights_at(*morph_channel_, time, weights);
+            morph_weights_at(*morph_channel_, seconds * morph_ticks_per_second_, weights);
         }
         for (std::size_t target = 0; target < weights.size(); ++target) {
             for (std::size_t i = 0; weights[target] != 0 && i < positions.size(); ++i) {
@@ -85,10 +102,11 @@ public:
     }
 
 private:
-    mesh surface_of(std::string const& path, aiMesh const& source, model_uvs uvs) {
+    mesh surface_of(std::string const& path, aiMesh const& source, model_uvs uvs, std::size_t uv_set) {
         mesh surface;
-        auto is_uv_usable =
-            uvs == model_uvs::from_file && source.HasTextureCoords(0) && source.mNumUVComponents[0] >= 2;
+        auto is_uv_usable = uvs == model_uvs::from_file && uv_set < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
+                            source.HasTextureCoords(static_cast<unsigned>(uv_set)) &&
+                            source.mNumUVComponents[uv_set] >= 2;
         for (unsigned i = 0; i < source.mNumVertices; ++i) {
             surface.positions.push_back(to_glm(source.mVertices[i]));
             if (!is_place(surface.positions.back())) {
@@ -96,7 +114,7 @@ private:
                                  " is not finite, expected coordinates");
             }
             if (is_uv_usable) {
-                auto const uv = to_glm(source.mTextureCoords[0][i]);
+                auto const uv = to_glm(source.mTextureCoords[uv_set][i]);
                 surface.uvs.push_back({uv.x, uv.y});
                 is_uv_usable = is_place(uv);
             }
@@ -164,7 +182,7 @@ private:
         }
     }
 
-    void read_morph_targets(aiMesh const& source, model_nodes const& nodes, aiAnimation const* animation) {
+    void read_morph_targets(aiMesh const& source) {
         for (unsigned target = 0; target < source.mNumAnimMeshes; ++target) {
             auto const& morphed = *source.mAnimMeshes[target];
             auto& offsets = morph_offsets_.emplace_back(source.mNumVertices, glm::vec3(0));
@@ -175,15 +193,6 @@ private:
             morph_weights_.push_back(morphed.mWeight);
         }
         report_.morph_targets = morph_offsets_.size();
-
-        // Channels are called after the node or the mesh, in some formats with a number behind a star
-        for (unsigned i = 0; animation != nullptr && i < animation->mNumMorphMeshChannels; ++i) {
-            std::string const full_name = animation->mMorphMeshChannels[i]->mName.C_Str();
-            auto const name = full_name.substr(0, full_name.find('*'));
-            if (name == nodes.node(node_).mName.C_Str() || name == source.mName.C_Str()) {
-                morph_channel_ = animation->mMorphMeshChannels[i];
-            }
-        }
     }
 
     void rearrange(std::span<std::uint32_t const> source) {
@@ -212,6 +221,7 @@ private:
     }
 
     std::size_t node_;
+    std::array<std::string, 2> names_; ///< of the node and of the mesh
     model_object_report report_;
     std::shared_ptr<mesh const> surface_;
     std::vector<joint_weights> joint_weights_; ///< one a vertex; empty without joints
@@ -220,6 +230,7 @@ private:
     std::vector<std::vector<glm::vec3>> morph_offsets_; ///< [targets][vertices]
     std::vector<float> morph_weights_;                  ///< at rest
     aiMeshMorphAnim const* morph_channel_ = nullptr;
+    double morph_ticks_per_second_ = 1;
 };
 
 } // namespace genrender::examples

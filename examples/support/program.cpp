@@ -5,8 +5,8 @@
 #include "checkpoint_file.hpp"
 #include "guidance_source.hpp"
 #include "interruption.hpp"
+#include "kept_steps.hpp"
 #include "npy_file.hpp"
-#include "output_file.hpp"
 #include "plan_output.hpp"
 #include "preflight_output.hpp"
 #include "progress_line.hpp"
@@ -14,12 +14,11 @@
 #include "render_output.hpp"
 #include "resident_memory.hpp"
 #include "run_report.hpp"
+#include "video_file.hpp"
 
 #include <genrender/baselines/pix2video.hpp>
 #include <genrender/baselines/tokenflow.hpp>
-#include <genrender/core/fingerprint.hpp>
 #include <genrender/pipeline/render.hpp>
-#include <genrender/version.hpp>
 
 #include <algorithm>
 #include <exception>
@@ -58,76 +57,19 @@ auto with_canonical_maps(render_options const& options, guidance_source const& s
                : use(to_uv_view(source.guidance.uv));
 }
 
-/// Frames as pictures.
-std::vector<rgb8_image> pictures_of(tensor<float, 4> const& images) {
-    std::vector<rgb8_image> frames;
-    for (std::size_t i = 0; i < images.shape()[0]; ++i) {
-        frames.push_back(rgb_picture(to_view(images)[i]));
-    }
-    return frames;
-}
-
-/// What tells the denoiser of a run from others: the model with its prompt, and the depth.
-std::string key_of(guidance_source const& source, picture_model const& model) {
-    fingerprint depth;
-    auto const& maps = source.guidance.depth;
-    for (std::size_t p = 0; p < maps.depth.size(); ++p) {
-        auto const is_covered = maps.coverage.data()[p] != 0;
-        depth.add(is_covered ? maps.depth.data()[p] : -1.0F);
-    }
-    return model.key() + " " + extents_text({source.image.height, source.image.width}) + " " +
-           std::to_string(depth.value()) + " " GENRENDER_VERSION_STRING;
-}
-
-/// What is written after steps of a run. A disk that has no room is said once; the run goes on, and so does the
-/// checkpoint that there is.
-class kept_steps {
-public:
-    kept_steps(render_options const& options, picture_model const& model, any_loop loop)
-        : options_(&options), model_(&model), loop_(std::move(loop)), file_(options.out) {
-        for (auto const& folder : {options.out, options.out / "frames", options.out / "maps"}) {
-            remove_left_parts(folder);
-        }
-    }
-
-    /// Told of every step that is done.
-    void operator()(finished_step<float> const& step) {
-        try {
-            file_.write(step.make_checkpoint());
-            if (options_->preview > 0 && (step.number() + 1) % options_->preview == 0) {
-                write_preview(options_->out, pictures_of(model_->pictures(step.estimates(), loop_)));
-            }
-        } catch (file_error const& error) {
-            if (!has_warned_) {
-                std::cerr << "\nnote: " << error.what() << "\n";
-            }
-            has_warned_ = true;
-        }
-    }
-    /// What it costs to keep them.
-    checkpoint_file const& file() const { return file_; }
-
-private:
-    render_options const* options_;
-    picture_model const* model_;
-    any_loop loop_;
-    checkpoint_file file_;
-    bool has_warned_ = false;
-};
-
 /// A run of --resume that does not fit what there is.
 struct wrong_checkpoint : std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
-/// Renders and writes all that is told, but for a run that Ctrl-C ends. The exit code; `again` is the command that goes
-/// on.
-int run(render_options const& options, guidance_source const& source, picture_model& model,
+/// Renders, from a checkpoint where there is one, and writes everything but the last lines. Cuts the maps of `source` to
+/// what is shown. The exit code; `again` is the command that goes on after Ctrl-C.
+int run(render_options const& options, guidance_source& source, picture_model& model,
         std::optional<earlier_run> const& earlier, std::optional<checkpoint<float>> const& from,
         threaded_loop const& loop, stopwatch const& total, std::string const& again) {
     // The denoiser is told the prompt and the depth of the whole animation.
-    auto const phi = model.network(source.guidance, source.image, loop);
-    kept_steps kept(options, model, loop);
+    auto const phi = model.network(source.guidance, source.extents.rendered, loop);
+    kept_steps kept(options, model, source.extents.shown, loop);
     auto const key = key_of(source, model);
 
     render_result<float> result;
@@ -158,30 +100,37 @@ int run(render_options const& options, guidance_source const& source, picture_mo
             });
         });
     });
-    auto const words = "interrupted: " + (from || kept.file().bytes() > 0
-                                              ? kept.file().path().string() +
-                                                    " has all steps that are done; go on with\n    " + again + "\n"
-                                              : "no step was done, so that there is nothing to go on from\n");
+    auto const last_words = kept.last_words(from.has_value(), again);
     if (result.is_cancelled || was_interrupted()) {
-        std::cerr << "\n" << words;
+        std::cerr << "\n" << last_words;
         return interrupted_code;
     }
 
     if (options.keeps_latents) {
         write_npy(options.out / "latents.npy", to_view(std::as_const(result.z)));
     }
-    leave_when_interrupted("\n" + words);
-    auto const images = model.pictures(result.z, loop);
+    leave_when_interrupted("\n" + last_words);
+    auto const images = with_extents(model.pictures(result.z, loop), source.extents.shown);
     note_interruptions(); // Files that are begun are ended.
+    source.guidance = with_extents(std::move(source.guidance), source.extents.shown_maps());
+    write_frames(options.out / "frames", images, options.has_alpha ? &source.guidance.uv.coverage : nullptr,
+                 options.format);
     auto const frames = pictures_of(images);
-    write_pictures(options.out, source.guidance, frames);
+    write_pictures(options.out, source.guidance, frames, source.frames_per_second);
+    auto const video = options.out / "animation.mp4";
+    if (auto const ffmpeg = program_on_path("ffmpeg")) {
+        write_mp4(*ffmpeg, video, frames, source.frames_per_second);
+    } else {
+        std::filesystem::remove(video); // of an earlier run
+    }
     auto json = report_of(options, source, result.report, images);
     json["render_resident_bytes"] = grown ? nlohmann::ordered_json(*grown) : nlohmann::ordered_json(nullptr);
     json["seconds"] = seconds_of(result.report, total.seconds());
     json["checkpoint"] = {{"bytes", kept.file().bytes()}, {"seconds", kept.file().seconds()}};
     write_text(options.out / "report.json", json.dump(2) + "\n");
     if (earlier) {
-        write_comparison(options.out, *earlier, frames, method_name(name_in(method_names, options.method)));
+        write_comparison(options.out, *earlier, frames, method_name(name_in(method_names, options.method)),
+                         source.frames_per_second);
     }
     kept.file().remove();
     return 0;
@@ -191,7 +140,8 @@ int run(render_options const& options, guidance_source const& source, picture_mo
 int plan(render_options const& options, guidance_source const& source, picture_model& model,
          threaded_loop const& loop) {
     std::optional<any_denoiser<float>> phi;
-    auto const weights = resident_growth([&] { phi.emplace(model.network(source.guidance, source.image, loop)); });
+    auto const weights =
+        resident_growth([&] { phi.emplace(model.network(source.guidance, source.extents.rendered, loop)); });
     auto timed = with_canonical_maps(
         options, source, [&](auto const& maps) { return plan_run(*phi, maps, options.settings, loop.threads()); });
     timed.weights_bytes = weights;
@@ -223,7 +173,7 @@ std::string advice(recommendation const& one) {
 /// Tells what the maps are good for, at the feature resolutions of the network's injected layers. The exit code.
 int check(render_options const& options, guidance_source const& source, picture_model& model,
           threaded_loop const& loop) {
-    auto const phi = model.network(source.guidance, source.image, loop); // asked for its layers only
+    auto const phi = model.network(source.guidance, source.extents.rendered, loop); // asked for its layers only
     std::vector<grid_extents> grids;
     for (auto const& site : phi.sites()) {
         if (options.settings.layers(site, 0) && std::find(grids.begin(), grids.end(), site.grid) == grids.end()) {
@@ -235,13 +185,6 @@ int check(render_options const& options, guidance_source const& source, picture_
     });
     std::cout << text_of(report, advice) << "picture: " << (options.out / "preflight.png").string() << "\n";
     return report.allows_run() ? 0 : 1;
-}
-
-/// Throws value_error unless the network can halve its latents as often as it does.
-void require_pixels(grid_extents image, std::size_t factor) {
-    auto const expected = "a multiple of " + std::to_string(factor) + " for this model";
-    require_value(image.height % factor == 0, "--size", "height", image.height, expected.c_str());
-    require_value(image.width % factor == 0, "--width", "width", image.width, expected.c_str());
 }
 
 /// Prints a sentence and gives the exit code.
@@ -278,12 +221,14 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
         }
         options.size = options.size > 0 ? options.size : model->usual_size().height;
         make_folder(options.out);
-        source = load_guidance(options, model->scale(), loop);
+        source = load_guidance(options, model->scale(), model->scale() * model->grid_divisor(), loop);
         source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
+        for (auto const& note : source.notes) {
+            std::cerr << "note: " << note << "\n";
+        }
         auto const frame_count = source.guidance.uv.frame_count();
         options.settings.keyframes.count = options.keyframes.value_or(std::min<std::size_t>(4, frame_count));
         options.settings.noise.rays = source.rays;
-        require_pixels(source.image, model->scale() * model->grid_divisor());
         if (options.is_check) {
             return check(options, source, *model, loop);
         }
@@ -295,7 +240,7 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
             return plan(options, source, *model, loop);
         }
         if (!options.beside.empty()) {
-            earlier = load_earlier_run(options.beside, options.out, frame_count, source.image);
+            earlier = load_earlier_run(options.beside, options.out, frame_count, source.extents.shown);
         }
     } catch (no_run const& none) {
         return none.exit_code;
@@ -305,12 +250,9 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
         return fail(program, 1, error);
     }
     if (checkpoint_file const left(options.out); left.exists() && !options.resumes) {
-        source.notes.push_back(left.path().string() +
-                               " is of a run that was interrupted and is replaced after the first step: --resume "
-                               "would go on with it");
-    }
-    for (auto const& note : source.notes) {
-        std::cerr << "note: " << note << "\n";
+        std::cerr << "note: " << left.path().string()
+                  << " is of a run that was interrupted and is replaced after the first step: --resume would go on "
+                     "with it\n";
     }
     try {
         auto const again = command_text(argc, argv, "--resume");
@@ -323,6 +265,9 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
         return fail(program, 1, error);
     }
     std::cout << "animation:     " << (options.out / "animation.webp").string() << "\n"
+              << (std::filesystem::exists(options.out / "animation.mp4")
+                      ? "video:         " + (options.out / "animation.mp4").string() + "\n"
+                      : "video:         none, as ffmpeg is not on the PATH\n")
               << "contact sheet: " << (options.out / "contact_sheet.png").string() << "\n"
               << "report:        " << (options.out / "report.json").string() << "\n";
     return 0;

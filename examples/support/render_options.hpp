@@ -5,7 +5,9 @@
 #include "../scenes/scenes.hpp"
 #include "consistency_options.hpp"
 #include "correspondence_options.hpp"
+#include "frame_file.hpp"
 #include "injection_options.hpp"
+#include "model_input_options.hpp"
 #include "names.hpp"
 #include "program.hpp"
 
@@ -46,6 +48,7 @@ struct render_options {
     std::string scene;
     std::filesystem::path model;
     std::filesystem::path maps;
+    model_input_options input;
     prompt_options prompt;
     std::filesystem::path out;
     std::filesystem::path beside;                                    ///< an earlier run to compare with
@@ -64,6 +67,8 @@ struct render_options {
     std::optional<vector_target> vectors; ///< none: the processor's
     std::uint64_t seed = 0;
     render_method method = render_method::generative_rendering;
+    frame_format format = frame_format::png8;
+    bool has_alpha = false; ///< of the frames: where objects are
     bool is_quiet = false;
     bool resumes = false;       ///< goes on from OUT/checkpoint
     std::size_t preview = 0;    ///< steps from one preview to the next; 0: none
@@ -174,17 +179,27 @@ inline render_options parse_render_options(int argc, char const* const* argv,
 
     std::size_t frames = 0;
     auto* const frames_option =
-        app.add_option("--frames", frames, "number of frames (24; with --maps: at most this many)")
+        app.add_option(
+               "--frames", frames,
+               "number of frames (24; of a model taken evenly from its time, unless --fps is given, else its real\n"
+               "time and at most 48; with --maps: at most this many)")
             ->check(positive)
             ->type_name("N");
     of_models
-        .add_option(
-            "--size,--height", options.size,
-            "height of the frames in pixels, a multiple of 16 with the miniature, of 64 with Stable Diffusion (what\n"
-            "the model was trained for: 128, 512); the width follows the input: the same, with --maps as they have it")
+        .add_option("--size,--height", options.size,
+                    "height of the frames in pixels (what the network was trained for: 128, 512); the width follows "
+                    "the camera\n"
+                    "or the maps; what the network renders besides, in whole steps of 16 or 64, is cut")
         ->check(positive)
         ->type_name("PX");
     of_models.add_option("--width", options.width, "width of the frames in pixels")->check(positive)->type_name("PX");
+    options.input.add_to(app);
+    std::string format = "png8";
+    app.add_option("--frame-format", format, "of the frames: png8, png16 (bits a channel) or exr (linear light)")
+        ->capture_default_str()
+        ->check(one_of(all_names(frame_format_names)))
+        ->type_name("FORMAT");
+    app.add_flag("--alpha-channel", options.has_alpha, "frames carry the mask of the objects as alpha");
     settings.steps = 20;
     app.add_option("--steps", settings.steps, "denoising steps")
         ->capture_default_str()
@@ -327,6 +342,7 @@ inline render_options parse_render_options(int argc, char const* const* argv,
         "step.");
     try {
         app.parse(argc, argv);
+        options.input.require_input(!options.model.empty(), !options.scene.empty());
         options.method = value_in(method_names, method);
         auto const foreign = ours->count_all() -
                              (options.method == render_method::tokenflow ? keyframes_option->count() : std::size_t{0});
@@ -382,6 +398,7 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     if (keyframes_option->count() > 0) {
         options.keyframes = keyframes;
     }
+    options.format = value_in(frame_format_names, format);
     settings.sampler = value_in(sampler_names, sampler_name);
     settings.keyframe_storage = value_in(storage_names, storage);
     settings.noise.seed = options.seed;

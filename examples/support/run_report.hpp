@@ -65,7 +65,7 @@ inline earlier_run load_earlier_run(std::filesystem::path const& earlier, std::f
                   "another folder than --out");
     earlier_run run{method_name(json["method"].get<std::string>()), {}};
     for (std::size_t i = 0; i < frames; ++i) {
-        auto const frame_path = earlier / "frames" / numbered_png(i);
+        auto const frame_path = earlier / "frames" / numbered_name(i);
         run.frames.push_back(read_png(frame_path));
         if (run.frames.back().grid() != image) {
             throw file_error(frame_path.string() + ": the frame is " +
@@ -76,7 +76,7 @@ inline earlier_run load_earlier_run(std::filesystem::path const& earlier, std::f
     return run;
 }
 
-/// What report.json says of a run but its times: settings, memory, coverage, correspondence error, notes.
+/// What report.json says of a run, whose maps are cut to what is shown, but its times: settings, memory, coverage, correspondence error, notes.
 inline nlohmann::ordered_json report_of(render_options const& options, guidance_source const& source,
                                         render_report const& report, tensor<float, 4> const& images) {
     nlohmann::ordered_json json;
@@ -92,7 +92,9 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     told["pipeline"] = options.pipeline.string();
     told["engine"] = options.engine.string();
     told["frames"] = images.shape()[0];
-    told["size"] = {source.image.height, source.image.width};
+    told["size"] = {source.extents.shown.height, source.extents.shown.width};
+    told["rendered_size"] = {source.extents.rendered.height, source.extents.rendered.width};
+    told["frames_per_second"] = source.frames_per_second;
     told["map_size"] = {source.guidance.uv.grid().height, source.guidance.uv.grid().width};
     told["steps"] = settings.steps;
     told["sampler"] = name_in(sampler_names, settings.sampler);
@@ -147,7 +149,7 @@ inline nlohmann::ordered_json report_of(render_options const& options, guidance_
     if (report.consensus.on_objects > 0) {
         json["consensus_coverage"] = report.consensus.share();
     }
-    pixel_correspondence const pixels(to_uv_view(source.guidance.uv), source.image);
+    pixel_correspondence const pixels(to_uv_view(source.guidance.uv), source.extents.shown);
     json["correspondence_error"] = nlohmann::ordered_json::object();
     for (std::size_t const interval : {1U, 5U, 10U}) {
         auto const error = correspondence_error(to_view(images), pixels, interval);

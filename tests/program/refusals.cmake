@@ -51,7 +51,11 @@ refuses("an unknown option" 2 "--colour" ${scene} --prompt dots ${out} --colour)
 refuses("zero frames" 2 "--frames" ${scene} --prompt dots ${out} --frames 0)
 refuses("more keyframes than frames" 2 "count is 9, expected 1 to the animation's 3 frames" ${scene} --prompt dots ${out}
     --frames 3 --keyframes 9)
-refuses("a size that the network cannot halve" 2 "--size: height is 60, expected a multiple of 16" ${scene} --prompt dots ${out} --size 60)
+refuses("options of a model without one" 2 "are of --model" ${scene} --prompt dots ${out} --camera fit)
+refuses("a range of a scene" 2 "--start and --end" ${scene} --prompt dots ${out} --start 3)
+refuses("a rate of nothing" 2 "--fps" ${scene} --prompt dots ${out} --fps 0)
+refuses("an unknown format of frames" 2 "--frame-format" ${scene} --prompt dots ${out} --frame-format jpeg)
+refuses("a set of coordinates and an atlas" 2 "--atlas" --model ${broken}/text.obj --prompt dots ${out} --atlas --uv-set 1)
 refuses("an alpha above 1" 2 "--alpha" ${scene} --prompt dots ${out} --alpha 1.5)
 refuses("an alpha that is no number" 2 "--alpha" ${scene} --prompt dots ${out} --alpha nan)
 refuses("an unknown preset" 2 "--preset" ${scene} --prompt dots ${out} --preset loud)
@@ -136,8 +140,8 @@ refuses("a foreign model" 1 "text.obj" --model ${broken}/text.obj --prompt dots 
 refuses("foreign maps" 1 "frame_0001.exr" --maps ${broken}/maps --prompt dots ${out})
 refuses("8-bit maps" 1 "256" --maps ${broken}/pictures --prompt dots ${out})
 refuses("a missing folder of maps" 1 "nowhere" --maps ${broken}/nowhere --prompt dots ${out})
-refuses("a size that does not divide the maps" 2 "--size: height is 48, expected a divisor of the maps' [256, 256]"
-    --maps ${sequence} --prompt dots ${out} --size 48)
+refuses("a size above the maps'" 2 "--size: height is 300, expected at most the maps', which are 256 x 256"
+    --maps ${sequence} --prompt dots ${out} --size 300)
 refuses("an environment of maps" 2 "--background: environment is of EXR maps" --maps ${sequence} --prompt dots ${out}
     --background environment)
 refuses("a comparison with nothing" 1 "report.json: is no report of a run" ${scene} --prompt dots ${out}
