@@ -41,7 +41,8 @@ TEXT
 
 # What the library and its examples are built from.
 demo_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
-    libassimp-dev libbullet-dev libopenexr-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev libutf8proc-dev"
+    libassimp-dev libtinygltf-dev libbullet-dev libopenexr-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev
+    libutf8proc-dev"
 evaluate_packages="$demo_packages gnuplot-nox"
 bench_packages="g++ cmake ninja-build pkg-config libeigen3-dev libxtensor-dev libglm-dev libnanoflann-dev
     libbenchmark-dev libcli11-dev nlohmann-json3-dev libutf8proc-dev"
@@ -85,8 +86,8 @@ install_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         stop "This script installs packages on Debian 12, Ubuntu 24.04 and newer. On this system, install by hand
   a C++20 compiler (g++ 12 or clang++ 14, or newer), CMake 3.25, Ninja, pkg-config,
-  Eigen 3.4, xtensor 0.24, GLM 0.9.9, utf8proc 2; for the examples assimp 5, Bullet 3, OpenEXR 3, libpng, libwebp, CLI11 2,
-  nlohmann_json 3; for the tests doctest 2.4, Google Benchmark 1.7, valgrind, clang-format 14, clang-tidy and Doxygen 1.9
+  Eigen 3.4, xtensor 0.24, GLM 0.9.9, utf8proc 2; for the examples assimp 5, tinygltf 2.7, Bullet 3, OpenEXR 3, libpng,
+  libwebp, CLI11 2, nlohmann_json 3; for the tests doctest 2.4, Google Benchmark 1.7, valgrind, clang-format 14, clang-tidy and Doxygen 1.9
 and then run: cmake --workflow --preset demo (or test, or bench)"
     fi
     missing=$(missing_packages "$@")

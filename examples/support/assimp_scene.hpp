@@ -2,6 +2,7 @@
 // [GR sec. 3] A model file of any format that assimp reads: FBX, Collada, OBJ, X and many more.
 #pragma once
 
+#include "model_assembly.hpp"
 #include "model_camera.hpp"
 #include "model_nodes.hpp"
 #include "model_part.hpp"
@@ -30,20 +31,6 @@
 #include <vector>
 
 namespace genrender::examples {
-
-/// The axis that points upwards in a file.
-enum class model_up {
-    from_file, ///< what the file says, y if it says nothing
-    y,
-    z
-};
-
-/// What of a file is used.
-struct model_assembly {
-    model_uvs uvs = model_uvs::from_file;
-    std::size_t uv_set = 0;
-    model_up up = model_up::from_file;
-};
 
 /// A file that assimp has read.
 class assimp_scene final : public model_scene {

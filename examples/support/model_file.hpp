@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assimp_scene.hpp"
+#include "gltf_scene.hpp"
 #include "model_camera.hpp"
 #include "model_report.hpp"
 #include "model_scene.hpp"
@@ -14,6 +15,7 @@
 #include <genrender/scene/bounds.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -73,7 +75,7 @@ private:
     friend model_animation load_model(std::filesystem::path const&, model_options const&);
 
     model_animation(std::filesystem::path const& path, model_options const& options) : path_(path.string()) {
-        scene_ = std::make_shared<assimp_scene>(path, model_assembly{options.uvs, options.uv_set, options.up});
+        scene_ = read_scene(path, {options.uvs, options.uv_set, options.up});
         auto const playing = choose_takes(scene_->takes(), options.time.animation);
         scene_->play(playing);
         times_ = choose_times(*scene_, playing, options.time);
@@ -83,6 +85,16 @@ private:
         report_.notes.insert(report_.notes.end(), times_.notes.begin(), times_.notes.end());
         report_.notes.insert(report_.notes.end(), scene_->notes().begin(), scene_->notes().end());
         report_.objects = scene_->objects();
+    }
+
+    static std::shared_ptr<model_scene> read_scene(std::filesystem::path const& path, model_assembly const& assembly) {
+        auto extension = path.extension().string();
+        std::transform(extension.begin(), extension.end(), extension.begin(),
+                       [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+        if (extension == ".gltf" || extension == ".glb") {
+            return std::make_shared<gltf_scene>(path, assembly);
+        }
+        return std::make_shared<assimp_scene>(path, assembly);
     }
 
     void choose_cameras(bool is_animated, model_options const& options) {

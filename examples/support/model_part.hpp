@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
-// One mesh of a model file at one node: its surface, and where its vertices are when the nodes have moved.
+// One mesh of a file that assimp has read at one node: where its vertices are when the nodes have moved.
 #pragma once
 
 #include "model_nodes.hpp"
 #include "model_report.hpp"
-#include "triangle_atlas.hpp"
+#include "model_shape.hpp"
 
-#include <genrender/core/error.hpp>
 #include <genrender/scene/animation.hpp>
 #include <genrender/scene/mesh.hpp>
 #include <genrender/scene/skinning.hpp>
-#include <genrender/scene/uv_overlap.hpp>
 
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
@@ -21,7 +19,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -29,14 +27,7 @@
 
 namespace genrender::examples {
 
-/// Which texture coordinates a model gets.
-enum class model_uvs {
-    from_file, ///< a set of the file's; a mesh without it gets an atlas
-    atlas      ///< an atlas of its triangles for every mesh: nothing overlaps
-};
-
-/// A mesh at a node. Positions follow v' = sum_j w_j G_j B_j (v + sum_k m_k d_k): m the morph weights, d the targets'
-/// offsets, G the joints' nodes, B the inverse binds; without joints G is the mesh's own node.
+/// A mesh at a node (see model_shape for where its vertices are).
 class model_part {
 public:
     /// Throws file_error that begins with `path` if positions are not finite or triangles name vertices that do not
@@ -44,21 +35,14 @@ public:
     model_part(std::string const& path, aiMesh const& source, model_nodes const& nodes, std::size_t node, model_uvs uvs,
                std::size_t uv_set = 0)
         : node_(node), names_{nodes.node(node).mName.C_Str(), source.mName.C_Str()} {
-        report_.name = nodes.node(node).mName.length > 0 ? nodes.node(node).mName.C_Str() : source.mName.C_Str();
-        report_.name = report_.name.empty() ? "unnamed" : report_.name;
-        auto surface = surface_of(path, source, uvs, uv_set);
-        read_joints(source, nodes);
-        read_morph_targets(source);
-        if (report_.has_made_uvs) {
-            auto atlas = make_triangle_atlas(surface);
-            surface = std::move(atlas.surface);
-            rearrange(atlas.source);
-        }
-        count(surface);
-        surface_ = std::make_shared<mesh const>(std::move(surface));
+        model_arrays arrays;
+        arrays.surface = surface_of(source, uvs, uv_set);
+        read_joints(source, nodes, arrays);
+        read_morph_targets(source, arrays);
+        shape_.emplace(path, names_[0].empty() ? names_[1] : names_[0], std::move(arrays));
     }
 
-    model_object_report const& report() const { return report_; }
+    model_object_report const& report() const { return shape_->report(); }
 
     /// Morphed by these animations from now on, by the last one that names its node or mesh.
     void play(std::span<aiAnimation const* const> animations) {
@@ -78,72 +62,47 @@ public:
 
     /// The part with its nodes at `to_world`, at a time in seconds.
     posed_object at(object_index object, std::span<glm::mat4 const> to_world, double seconds) const {
-        // Add the morph targets
-        auto positions = surface_->positions;
         auto weights = morph_weights_;
         if (morph_channel_ != nullptr) {
             morph_weights_at(*morph_channel_, seconds * morph_ticks_per_second_, weights);
         }
-        for (std::size_t target = 0; target < weights.size(); ++target) {
-            for (std::size_t i = 0; weights[target] != 0 && i < positions.size(); ++i) {
-                positions[i] += weights[target] * morph_offsets_[target][i];
-            }
-        }
-
-        // Follow the joints, or the node
-        if (joint_nodes_.empty()) {
-            return {object, surface_, transformed(std::move(positions), to_world[node_])};
+        if (!shape_->has_joints()) {
+            return shape_->at(object, weights, to_world[node_]);
         }
         std::vector<glm::mat4> global;
         for (auto const joint : joint_nodes_) {
             global.push_back(to_world[joint]);
         }
-        return {object, surface_, skin(positions, joint_weights_, global, bind_)};
+        return shape_->at(object, weights, global, bind_);
     }
 
 private:
-    mesh surface_of(std::string const& path, aiMesh const& source, model_uvs uvs, std::size_t uv_set) {
+    static mesh surface_of(aiMesh const& source, model_uvs uvs, std::size_t uv_set) {
         mesh surface;
-        auto is_uv_usable = uvs == model_uvs::from_file && uv_set < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
-                            source.HasTextureCoords(static_cast<unsigned>(uv_set)) &&
-                            source.mNumUVComponents[uv_set] >= 2;
+        auto const has_uvs = uvs == model_uvs::from_file && uv_set < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
+                             source.HasTextureCoords(static_cast<unsigned>(uv_set)) &&
+                             source.mNumUVComponents[uv_set] >= 2;
         for (unsigned i = 0; i < source.mNumVertices; ++i) {
             surface.positions.push_back(to_glm(source.mVertices[i]));
-            if (!is_place(surface.positions.back())) {
-                throw file_error(path + ": vertex " + std::to_string(i) + " of " + report_.name +
-                                 " is not finite, expected coordinates");
-            }
-            if (is_uv_usable) {
-                auto const uv = to_glm(source.mTextureCoords[uv_set][i]);
+            if (has_uvs) {
+                auto const& uv = source.mTextureCoords[uv_set][i];
                 surface.uvs.push_back({uv.x, uv.y});
-                is_uv_usable = is_place(uv);
             }
         }
         for (unsigned i = 0; i < source.mNumFaces; ++i) {
             auto const& face = source.mFaces[i];
-            if (face.mNumIndices != 3) {
-                continue; // points and lines have no surface
-            }
-            surface.triangles.push_back({face.mIndices[0], face.mIndices[1], face.mIndices[2]});
-            auto const& t = surface.triangles.back();
-            if (std::max({t.x, t.y, t.z}) >= source.mNumVertices) {
-                throw file_error(path + ": triangle " + std::to_string(i) + " of " + report_.name + " is " +
-                                 extents_text({t.x, t.y, t.z}) + ", expected vertices below " +
-                                 std::to_string(source.mNumVertices));
+            if (face.mNumIndices == 3) { // points and lines have no surface
+                surface.triangles.push_back({face.mIndices[0], face.mIndices[1], face.mIndices[2]});
             }
         }
-        if (!is_uv_usable) {
-            surface.uvs.assign(surface.positions.size(), {});
-        }
-        report_.has_made_uvs = !is_uv_usable;
         return surface;
     }
 
-    void read_joints(aiMesh const& source, model_nodes const& nodes) {
+    void read_joints(aiMesh const& source, model_nodes const& nodes, model_arrays& arrays) {
         if (source.mNumBones == 0) {
             return;
         }
-        joint_weights_.resize(source.mNumVertices);
+        arrays.weights.resize(source.mNumVertices);
         for (unsigned i = 0; i < source.mNumBones; ++i) {
             auto const& bone = *source.mBones[i];
             auto const joint = static_cast<std::uint32_t>(joint_nodes_.size());
@@ -152,83 +111,35 @@ private:
             for (unsigned k = 0; k < bone.mNumWeights; ++k) {
                 auto const& weight = bone.mWeights[k];
                 if (weight.mVertexId < source.mNumVertices && weight.mWeight > 0) {
-                    add_weight(joint_weights_[weight.mVertexId], joint, weight.mWeight);
+                    add_weight(arrays.weights[weight.mVertexId], joint, weight.mWeight);
                 }
             }
         }
-        report_.joints = joint_nodes_.size();
+        arrays.joints = joint_nodes_.size();
 
         // Vertices that no joint holds stay with the mesh's node
-        auto const own = static_cast<std::uint32_t>(joint_nodes_.size());
         joint_nodes_.push_back(node_);
         bind_.emplace_back(1.0f);
-        for (auto& vertex : joint_weights_) {
-            if (vertex.weights == glm::vec4(0)) {
-                add_weight(vertex, own, 1);
-            }
-        }
-        joint_weights_ = normalized(std::move(joint_weights_));
     }
 
-    // The four heaviest are kept: the file's reader limits most files to four already.
-    static void add_weight(joint_weights& vertex, std::uint32_t joint, float weight) {
-        int lightest = 0;
-        for (int k = 1; k < 4; ++k) {
-            lightest = vertex.weights[k] < vertex.weights[lightest] ? k : lightest;
-        }
-        if (weight > vertex.weights[lightest]) {
-            vertex.weights[lightest] = weight;
-            vertex.joints[lightest] = joint;
-        }
-    }
-
-    void read_morph_targets(aiMesh const& source) {
+    void read_morph_targets(aiMesh const& source, model_arrays& arrays) {
         for (unsigned target = 0; target < source.mNumAnimMeshes; ++target) {
             auto const& morphed = *source.mAnimMeshes[target];
-            auto& offsets = morph_offsets_.emplace_back(source.mNumVertices, glm::vec3(0));
+            auto& offsets = arrays.morph_offsets.emplace_back(source.mNumVertices, glm::vec3(0));
             for (unsigned i = 0; morphed.HasPositions() && i < std::min(source.mNumVertices, morphed.mNumVertices);
                  ++i) {
                 offsets[i] = to_glm(morphed.mVertices[i]) - to_glm(source.mVertices[i]);
             }
             morph_weights_.push_back(morphed.mWeight);
         }
-        report_.morph_targets = morph_offsets_.size();
-    }
-
-    void rearrange(std::span<std::uint32_t const> source) {
-        auto const rearranged = [&](auto const& given) {
-            std::remove_cvref_t<decltype(given)> result;
-            for (auto const vertex : source) {
-                result.push_back(given[vertex]);
-            }
-            return result;
-        };
-        if (!joint_weights_.empty()) {
-            joint_weights_ = rearranged(joint_weights_);
-        }
-        for (auto& offsets : morph_offsets_) {
-            offsets = rearranged(offsets);
-        }
-    }
-
-    void count(mesh const& surface) {
-        report_.vertices = surface.positions.size();
-        report_.triangles = surface.triangles.size();
-        report_.overlap = count_uv_overlap(surface, 512);
-        for (auto const& uv : surface.uvs) {
-            report_.uvs_outside += uv.x < 0 || uv.x > 1 || uv.y < 0 || uv.y > 1;
-        }
     }
 
     std::size_t node_;
     std::array<std::string, 2> names_; ///< of the node and of the mesh
-    model_object_report report_;
-    std::shared_ptr<mesh const> surface_;
-    std::vector<joint_weights> joint_weights_; ///< one a vertex; empty without joints
+    std::optional<model_shape> shape_; ///< made once the mesh is read
     std::vector<std::size_t> joint_nodes_;
     std::vector<glm::mat4> bind_;
-    std::vector<std::vector<glm::vec3>> morph_offsets_; ///< [targets][vertices]
-    std::vector<float> morph_weights_;                  ///< at rest
+    std::vector<float> morph_weights_; ///< at rest
     aiMeshMorphAnim const* morph_channel_ = nullptr;
     double morph_ticks_per_second_ = 1;
 };

@@ -249,6 +249,9 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
     } catch (std::exception const& error) {
         return fail(program, 1, error);
     }
+    if (from && !options.is_quiet) {
+        std::cerr << "note: goes on after step " << from->steps << " of " << options.settings.steps << "\n";
+    }
     if (checkpoint_file const left(options.out); left.exists() && !options.resumes) {
         std::cerr << "note: " << left.path().string()
                   << " is of a run that was interrupted and is replaced after the first step: --resume would go on "

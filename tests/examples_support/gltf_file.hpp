@@ -19,6 +19,7 @@ public:
     std::string skins;      ///< the elements of "skins"
     std::string animations; ///< the elements of "animations"
     std::string cameras;    ///< the elements of "cameras"
+    std::string more;       ///< further members of the file, each with a comma before it
 
     /// Adds floats as an accessor of `type` (SCALAR, VEC2, VEC3, VEC4, MAT4) and returns its number as text.
     std::string add(char const* type, std::initializer_list<float> values) {
@@ -38,13 +39,28 @@ public:
         return add_bytes(type, 5123, values.size() / width, values.begin(), values.size() * sizeof(std::uint16_t), "");
     }
 
+    /// Adds integers of any type of at most 16 bits that stand for [0, 1] or [-1, 1].
+    template <class Integer>
+    std::string add_normalized(char const* type, std::initializer_list<Integer> values) {
+        auto const component = 5120 + (sizeof(Integer) == 2 ? 2 : 0) + (Integer(-1) > Integer(0) ? 1 : 0);
+        auto const width = std::strcmp(type, "SCALAR") == 0 ? 1u : unsigned(type[3] - '0');
+        return add_bytes(type, component, values.size() / width, values.begin(), values.size() * sizeof(Integer),
+                         ", \"normalized\": true");
+    }
+
+    /// Adds an accessor by its text, and returns its number as text.
+    std::string add_accessor(std::string const& text) {
+        accessors_ += (accessor_count_ == 0 ? "" : ",\n") + text;
+        return std::to_string(accessor_count_++);
+    }
+
     std::string text() const {
         auto const list = [](char const* name, std::string const& elements) {
             return elements.empty() ? std::string{} : std::string(",\n\"") + name + "\": [" + elements + "]";
         };
         return "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 0, \"scenes\": [{\"nodes\": [0]}]" +
                list("nodes", nodes) + list("meshes", meshes) + list("skins", skins) + list("animations", animations) +
-               list("cameras", cameras) + list("accessors", accessors_) + list("bufferViews", views_) +
+               list("cameras", cameras) + more + list("accessors", accessors_) + list("bufferViews", views_) +
                ",\n\"buffers\": [{\"byteLength\": " + std::to_string(bytes_.size()) +
                ", \"uri\": \"data:application/octet-stream;base64," + base64() + "\"}]}\n";
     }
@@ -67,13 +83,12 @@ private:
 
     std::string add_bytes(char const* type, int component, std::size_t count, void const* data, std::size_t size,
                           std::string const& bounds) {
-        auto const number = std::to_string(accessor_count_++);
-        auto const comma = number == "0" ? "" : ",\n";
-        views_ += comma + std::string("{\"buffer\": 0, \"byteOffset\": ") + std::to_string(bytes_.size()) +
-                  ", \"byteLength\": " + std::to_string(size) + "}";
-        accessors_ += comma + std::string("{\"bufferView\": ") + number +
-                      ", \"componentType\": " + std::to_string(component) + ", \"count\": " + std::to_string(count) +
-                      ", \"type\": \"" + type + "\"" + bounds + "}";
+        auto const view = std::to_string(view_count_++);
+        views_ += (view == "0" ? "" : ",\n") + std::string("{\"buffer\": 0, \"byteOffset\": ") +
+                  std::to_string(bytes_.size()) + ", \"byteLength\": " + std::to_string(size) + "}";
+        auto const number =
+            add_accessor("{\"bufferView\": " + view + ", \"componentType\": " + std::to_string(component) +
+                         ", \"count\": " + std::to_string(count) + ", \"type\": \"" + type + "\"" + bounds + "}");
         auto const* const first = static_cast<unsigned char const*>(data);
         bytes_.insert(bytes_.end(), first, first + size);
         bytes_.resize((bytes_.size() + 3) / 4 * 4);
@@ -99,6 +114,7 @@ private:
     std::string accessors_;
     std::string views_;
     std::size_t accessor_count_ = 0;
+    std::size_t view_count_ = 0;
     std::vector<unsigned char> bytes_;
 };
 
