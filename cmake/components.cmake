@@ -55,6 +55,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     core/end_header.inl
     core/error.hpp
     core/finite.hpp
+    core/fingerprint.hpp
     core/half_precision.hpp
     core/half_storage.hpp
     core/index.hpp
@@ -147,6 +148,7 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     sampling/run_shapes.hpp
     sampling/sampler.hpp
     sampling/sampler_arguments.hpp
+    sampling/sampler_history.hpp
     sampling/storing_denoiser.hpp
     keyframes/draw_keyframes.hpp
     keyframes/feature_bank.hpp
@@ -186,15 +188,19 @@ genrender_component(core PACKAGES Eigen3 xtensor nanoflann Threads HEADERS
     normalization/low_band_latents.hpp
     normalization/normalization_target.hpp
     normalization/supported_gain.hpp
+    pipeline/checkpoint.hpp
     pipeline/estimate_consensus.hpp
+    pipeline/finished_step.hpp
     pipeline/generative_rendering.hpp
     pipeline/memory_plan.hpp
     pipeline/pass_latents.hpp
     pipeline/progress.hpp
     pipeline/render.hpp
+    pipeline/render_arguments.hpp
     pipeline/render_report.hpp
     pipeline/render_settings.hpp
     pipeline/run_description.hpp
+    pipeline/run_fingerprint.hpp
     pipeline/run_sampler.hpp
     pipeline/sequence_denoiser.hpp
     pipeline/sequence_passes.hpp

@@ -23,6 +23,7 @@ public:
     std::size_t scale() const override { return model_.scale(); }
     grid_extents usual_size() const override { return {model_.usual_size(), model_.usual_size()}; }
     std::size_t grid_divisor() const override { return model_.config().grid_divisor(); }
+    std::string key() const override { return model_.key(); }
     float sigma_min() const override { return static_cast<float>(model_.schedule().sigma_min()); }
     float sigma_max() const override { return static_cast<float>(model_.schedule().sigma_max()); }
     any_denoiser<float> network(rendered_guidance const& guidance, grid_extents image, any_loop const& loop) override {
@@ -43,7 +44,12 @@ std::unique_ptr<picture_model> model_of(render_options const& options) {
     auto engine = load_engine(options.engine);
     auto const sigma_min = engine.sigma_min();
     auto const sigma_max = engine.sigma_max();
-    return std::make_unique<own_model>(own_denoiser{std::move(engine), sigma_min, sigma_max});
+    fingerprint library;
+    add_file(library, options.engine);
+    return std::make_unique<own_model>(own_denoiser{.phi = std::move(engine),
+                                                    .sigma_min = sigma_min,
+                                                    .sigma_max = sigma_max,
+                                                    .key = std::to_string(library.value())});
 }
 
 } // namespace

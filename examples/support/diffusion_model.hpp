@@ -3,8 +3,10 @@
 #pragma once
 
 #include "guidance_source.hpp"
+#include "model_key.hpp"
 #include "render_options.hpp"
 
+#include <genrender/core/fingerprint.hpp>
 #include <genrender/core/tensor.hpp>
 #include <genrender/maps/cell_extents.hpp>
 #include <genrender/reference/pipeline_files.hpp>
@@ -13,6 +15,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,7 +26,7 @@ class diffusion_model {
 public:
     /// Reads what is needed to say all that can be wrong. Throws file_error and value_error that name it.
     explicit diffusion_model(render_options const& options)
-        : prompt_(options.prompt), pipeline_(files_of(options), options.tokenizer) {
+        : prompt_(options.prompt), pipeline_(files_of(options), options.tokenizer), told_(options) {
         if (!prompt_.guidance_scale) {
             auto const is_miniature = options.pipeline == render_options{}.pipeline;
             prompt_.guidance_scale = is_miniature ? 3 : 7.5;
@@ -57,6 +60,26 @@ public:
             }
         }
         return notes;
+    }
+
+    /// A fingerprint of all weights and of what is told of pictures, as text. Reads the files once more.
+    std::string key() const {
+        fingerprint all;
+        add_model(all, told_.pipeline, told_.variant);
+        add_model(all, told_.controlnet, told_.variant);
+        add_model(all, told_.tokenizer);
+        for (auto const& [path, scale] : told_.loras) {
+            add_model(all, path);
+            all.add(scale);
+        }
+        all.add(told_.prediction_type);
+        all.add(std::string_view(prompt_.text));
+        all.add(std::string_view(prompt_.negative));
+        all.add(prompt_.guidance_scale);
+        all.add(prompt_.guidance_rescale);
+        all.add(prompt_.conditioning_scale);
+        all.add(prompt_.clip_skip);
+        return std::to_string(all.value());
     }
 
     /// The network that renders the depth of the guidance in pictures of these extents.
@@ -98,6 +121,7 @@ private:
 
     prompt_options prompt_;
     reference::stable_diffusion<float> pipeline_;
+    render_options told_;
 };
 
 } // namespace genrender::examples

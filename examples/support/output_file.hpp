@@ -5,6 +5,7 @@
 #include <genrender/core/error.hpp>
 
 #include <atomic>
+#include <cerrno>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,8 @@
 #include <string>
 #include <system_error>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace genrender::examples {
@@ -43,9 +46,11 @@ public:
         name.insert(name.begin(), '.'); // hidden, and no EXR or PNG by its ending
         name += ".part";
         temporary_ = folder / name;
-        if (!std::ofstream(temporary_, std::ios::binary)) {
+        held_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        if (held_ < 0) {
             throw file_error(folder.string() + ": cannot be written, expected a folder where files may be made");
         }
+        ::flock(held_, LOCK_SH | LOCK_NB); // tells remove_left_parts, for as long as the program lives
     }
 
     output_file(output_file const&) = delete;
@@ -54,6 +59,7 @@ public:
     ~output_file() {
         std::error_code ignored;
         std::filesystem::remove(temporary_, ignored);
+        ::close(held_);
     }
 
     /// Where to write.
@@ -68,10 +74,50 @@ public:
         }
     }
 
+    /// The same, and what was written outlives a power failure: when it returns the disk has bytes and name. Throws as
+    /// above, and if the disk does not take them.
+    void commit_to_disk() {
+        sync(held_, temporary_);
+        commit();
+        auto folder = path_.parent_path();
+        folder = folder.empty() ? "." : folder;
+        auto const names = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (names >= 0) {
+            sync(names, folder);
+            ::close(names);
+        }
+    }
+
 private:
+    static void sync(int file, std::filesystem::path const& path) {
+        // Some file systems cannot do it, which is no fault of what was written.
+        if (::fsync(file) != 0 && errno != EINVAL) {
+            throw file_error(path.string() + ": cannot be brought to the disk, expected room and a disk that works");
+        }
+    }
+
     std::filesystem::path path_;
     std::filesystem::path temporary_;
+    int held_ = -1;
 };
+
+/// Removes from a folder what output_files of programs that were killed have left there; those of programs that run stay.
+inline void remove_left_parts(std::filesystem::path const& folder) {
+    std::error_code ignored;
+    for (auto const& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        auto const name = entry.path().filename().string();
+        if (!name.starts_with('.') || !name.ends_with(".part") || !entry.is_regular_file(ignored)) {
+            continue;
+        }
+        auto const file = ::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC);
+        if (file >= 0) {
+            if (::flock(file, LOCK_EX | LOCK_NB) == 0) { // Nobody holds it.
+                std::filesystem::remove(entry.path(), ignored);
+            }
+            ::close(file);
+        }
+    }
+}
 
 /// Writes `bytes` as the whole of `path`, or leaves it as it was. Throws file_error if it cannot be written.
 inline void write_bytes(std::filesystem::path const& path, std::span<std::uint8_t const> bytes) {

@@ -23,6 +23,8 @@ struct own_denoiser {
     std::size_t scale = 1;      ///< pixels of a picture along a side of a token of the latents
     /// Pictures [frames, 3, height, width] of latents; empty for latents of three channels, which are pictures.
     std::function<tensor<float, 4>(latents<float> const&)> pictures{};
+    /// Names its weights and whatever else changes frames, so that --resume refuses the run of another denoiser.
+    std::string key{};
 };
 
 /// A model of pictures of one size, which knows its prompt by itself.
@@ -42,6 +44,7 @@ public:
         return {grid.height * told_.scale, grid.width * told_.scale};
     }
     bool is_of_one_size() const override { return true; }
+    std::string key() const override { return told_.key; }
     float sigma_min() const override { return told_.sigma_min; }
     float sigma_max() const override { return told_.sigma_max; }
     any_denoiser<float> network(rendered_guidance const&, grid_extents, any_loop const&) override { return told_.phi; }

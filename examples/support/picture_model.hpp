@@ -31,6 +31,8 @@ public:
     virtual bool is_of_one_size() const { return false; }
     /// Height and width of its latents are whole multiples of this.
     virtual std::size_t grid_divisor() const { return 1; }
+    /// What its denoiser does not tell of itself, in short: another for other weights or another prompt.
+    virtual std::string key() const = 0;
     /// The lowest noise level of its training.
     virtual float sigma_min() const = 0;
     /// The highest.

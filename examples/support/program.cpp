@@ -2,7 +2,10 @@
 // [GR alg. 1] The program with any model, compiled once: an animated scene in, a stylised animation out.
 #include "program.hpp"
 
+#include "checkpoint_file.hpp"
 #include "guidance_source.hpp"
+#include "interruption.hpp"
+#include "kept_steps.hpp"
 #include "npy_file.hpp"
 #include "plan_output.hpp"
 #include "preflight_output.hpp"
@@ -20,10 +23,13 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace genrender::examples {
@@ -51,36 +57,65 @@ auto with_canonical_maps(render_options const& options, guidance_source const& s
                : use(to_uv_view(source.guidance.uv));
 }
 
-/// Renders, and writes everything but the last lines. Cuts the maps of `source` to what is shown.
-void run(render_options const& options, guidance_source& source, picture_model& model,
-         std::optional<earlier_run> const& earlier, threaded_loop const& loop, stopwatch const& total) {
+/// A run of --resume that does not fit what there is.
+struct wrong_checkpoint : std::invalid_argument {
+    using std::invalid_argument::invalid_argument;
+};
+
+/// Renders, from a checkpoint where there is one, and writes everything but the last lines. Cuts the maps of `source` to
+/// what is shown. The exit code; `again` is the command that goes on after Ctrl-C.
+int run(render_options const& options, guidance_source& source, picture_model& model,
+        std::optional<earlier_run> const& earlier, std::optional<checkpoint<float>> const& from,
+        threaded_loop const& loop, stopwatch const& total, std::string const& again) {
     // The denoiser is told the prompt and the depth of the whole animation.
     auto const phi = model.network(source.guidance, source.extents.rendered, loop);
+    kept_steps kept(options, model, source.extents.shown, loop);
+    auto const key = key_of(source, model);
 
     render_result<float> result;
+    bool has_begun = false;
+    auto const show = progress_line(options.is_quiet);
+    auto const observer = [&](progress const& now) {
+        has_begun = true;
+        return show(now);
+    };
     auto const grown = resident_growth([&] {
         result = with_canonical_maps(options, source, [&](auto const& maps) {
             return with_method(options.method, [&](auto const& method) {
-                return render<std::remove_cvref_t<decltype(method)>>(phi, maps,
-                                                                     {.settings = options.settings,
-                                                                      .method = method,
-                                                                      .observer = progress_line(options.is_quiet),
-                                                                      .loop = loop});
+                try {
+                    return render<std::remove_cvref_t<decltype(method)>>(phi, maps,
+                                                                         {.settings = options.settings,
+                                                                          .method = method,
+                                                                          .observer = observer,
+                                                                          .loop = loop,
+                                                                          .after_step = std::ref(kept),
+                                                                          .resume = from ? &*from : nullptr,
+                                                                          .model_key = key});
+                } catch (std::invalid_argument const& error) {
+                    if (from && !has_begun) {
+                        throw wrong_checkpoint("--resume with " + kept.file().path().string() + ": " + error.what());
+                    }
+                    throw;
+                }
             });
         });
     });
+    auto const last_words = kept.last_words(from.has_value(), again);
+    if (result.is_cancelled || was_interrupted()) {
+        std::cerr << "\n" << last_words;
+        return interrupted_code;
+    }
 
     if (options.keeps_latents) {
         write_npy(options.out / "latents.npy", to_view(std::as_const(result.z)));
     }
+    leave_when_interrupted("\n" + last_words);
     auto const images = with_extents(model.pictures(result.z, loop), source.extents.shown);
+    note_interruptions(); // Files that are begun are ended.
     source.guidance = with_extents(std::move(source.guidance), source.extents.shown_maps());
     write_frames(options.out / "frames", images, options.has_alpha ? &source.guidance.uv.coverage : nullptr,
                  options.format);
-    std::vector<rgb8_image> frames;
-    for (std::size_t i = 0; i < images.shape()[0]; ++i) {
-        frames.push_back(rgb_picture(to_view(images)[i]));
-    }
+    auto const frames = pictures_of(images);
     write_pictures(options.out, source.guidance, frames, source.frames_per_second);
     auto const video = options.out / "animation.mp4";
     if (auto const ffmpeg = program_on_path("ffmpeg")) {
@@ -91,11 +126,14 @@ void run(render_options const& options, guidance_source& source, picture_model& 
     auto json = report_of(options, source, result.report, images);
     json["render_resident_bytes"] = grown ? nlohmann::ordered_json(*grown) : nlohmann::ordered_json(nullptr);
     json["seconds"] = seconds_of(result.report, total.seconds());
+    json["checkpoint"] = {{"bytes", kept.file().bytes()}, {"seconds", kept.file().seconds()}};
     write_text(options.out / "report.json", json.dump(2) + "\n");
     if (earlier) {
         write_comparison(options.out, *earlier, frames, method_name(name_in(method_names, options.method)),
                          source.frames_per_second);
     }
+    kept.file().remove();
+    return 0;
 }
 
 /// Tells what a run will take. The exit code.
@@ -163,11 +201,15 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
     render_options options;
     guidance_source source;
     std::optional<earlier_run> earlier;
+    std::optional<checkpoint<float>> from;
     std::unique_ptr<picture_model> model;
     threaded_loop loop;
     // Everything that can be wrong with the arguments shows before the first step.
     try {
         options = parse_render_options(argc, argv, kind);
+        if (options.resumes) {
+            from = checkpoint_file(options.out).read();
+        }
         loop = threaded_loop(options.threads);
         force_vector_target(options.vectors);
         model = make(options);
@@ -207,8 +249,21 @@ int run_program(int argc, char const* const* argv, program_kind kind, make_model
     } catch (std::exception const& error) {
         return fail(program, 1, error);
     }
+    if (from && !options.is_quiet) {
+        std::cerr << "note: goes on after step " << from->steps << " of " << options.settings.steps << "\n";
+    }
+    if (checkpoint_file const left(options.out); left.exists() && !options.resumes) {
+        std::cerr << "note: " << left.path().string()
+                  << " is of a run that was interrupted and is replaced after the first step: --resume would go on "
+                     "with it\n";
+    }
     try {
-        run(options, source, *model, earlier, loop, total);
+        auto const again = command_text(argc, argv, "--resume");
+        if (auto const code = run(options, source, *model, earlier, from, loop, total, again); code != 0) {
+            return code;
+        }
+    } catch (wrong_checkpoint const& error) {
+        return fail(program, 2, error);
     } catch (std::exception const& error) {
         return fail(program, 1, error);
     }

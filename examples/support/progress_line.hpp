@@ -2,28 +2,19 @@
 // Progress of a run as a line on the error stream.
 #pragma once
 
+#include "interruption.hpp"
+
 #include <genrender/pipeline/progress.hpp>
 
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstddef>
 #include <iostream>
 #include <string>
 
 namespace genrender::examples {
-
-namespace detail {
-
-inline std::atomic<bool>& was_interrupted() {
-    static std::atomic<bool> flag{false};
-    return flag;
-}
-
-} // namespace detail
 
 /// `75 s` or `2 min 05 s`
 inline std::string duration_text(double seconds) {
@@ -38,10 +29,7 @@ inline std::string duration_text(double seconds) {
 /// An observer that keeps one line up to date on a terminal, prints a line a step elsewhere and nothing if `is_quiet`.
 /// Ctrl-C ends the run in good order, a second one at once.
 inline progress_observer progress_line(bool is_quiet) {
-    std::signal(SIGINT, [](int) {
-        detail::was_interrupted() = true;
-        std::signal(SIGINT, SIG_DFL);
-    });
+    note_interruptions();
     auto const is_terminal = isatty(STDERR_FILENO) != 0;
     return [is_quiet, is_terminal](progress const& state) {
         auto const is_step_done = state.pass == render_pass::frames && state.frames_done == state.frames;
@@ -55,7 +43,7 @@ inline progress_observer progress_line(bool is_quiet) {
             auto const is_last = is_step_done && state.step + 1 == state.steps;
             std::cerr << (is_terminal ? "\r" : "") << line << (is_terminal && !is_last ? "" : "\n") << std::flush;
         }
-        return !detail::was_interrupted();
+        return !was_interrupted();
     };
 }
 

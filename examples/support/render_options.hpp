@@ -71,6 +71,8 @@ struct render_options {
     frame_format format = frame_format::png8;
     bool has_alpha = false; ///< of the frames: where objects are
     bool is_quiet = false;
+    bool resumes = false;       ///< goes on from OUT/checkpoint
+    std::size_t preview = 0;    ///< steps from one preview to the next; 0: none
     bool keeps_latents = false; ///< writes what the pictures are decoded from, too
     bool is_check = false;      ///< tells what the maps are good for and renders nothing
     bool is_plan = false;       ///< tells what the run will take and renders nothing
@@ -261,11 +263,20 @@ inline render_options parse_render_options(int argc, char const* const* argv,
 
     options.correspondence.add_to(app);
     options.consistency.add_to(app)->excludes(without)->excludes(deviations);
+    app.add_option("--preview", options.preview, "every N steps what the frames look like so far, as OUT/preview.png")
+        ->check(positive)
+        ->type_name("N");
+    app.add_flag(
+        "--resume", options.resumes,
+        "go on with the run that was interrupted in OUT, to the frames it would have had; all other options as\n"
+        "they were");
     app.add_flag("--check", options.is_check,
-                 "look before you run: what the maps are good for, as preflight.txt, .json and .png in OUT");
+                 "look before you run: what the maps are good for, as preflight.txt, .json and .png in OUT")
+        ->excludes("--resume");
     app.add_flag("--plan", options.is_plan,
                  "say before you run: memory and work of the run, as a table, plan.txt and plan.json in OUT")
-        ->excludes("--check");
+        ->excludes("--check")
+        ->excludes("--resume");
     auto* const of_pipeline =
         of_models.add_option_group("Model", "Stable Diffusion 1.x or 2.x with a ControlNet for depth");
     of_pipeline
@@ -334,7 +345,8 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     app.add_flag("--quiet", options.is_quiet, "no progress");
     app.footer(
         "It writes OUT/frames/0000.png ..., OUT/maps/, OUT/animation.webp, OUT/contact_sheet.png and OUT/report.json.\n"
-        "Exit code: 0 done, 1 failed, 2 bad arguments.");
+        "Exit code: 0 done, 1 failed, 2 bad arguments, 130 interrupted by Ctrl-C: --resume goes on from the last "
+        "step.");
     try {
         app.parse(argc, argv);
         options.input.require_input(!options.model.empty(), !options.scene.empty());

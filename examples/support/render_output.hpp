@@ -89,6 +89,12 @@ inline void write_pictures(std::filesystem::path const& out, rendered_guidance c
     write_png(out / "contact_sheet.png", contact_sheet(frames, {.enlargement = std::max<std::size_t>(1, factor / 2)}));
 }
 
+/// Writes preview.png, what the frames look like so far. Throws file_error if it cannot be written.
+inline void write_preview(std::filesystem::path const& out, std::vector<rgb8_image> const& frames) {
+    auto const factor = viewing_factor(frames.front().height);
+    write_png(out / "preview.png", contact_sheet(frames, {.enlargement = std::max<std::size_t>(1, factor / 2)}));
+}
+
 /// Frames of an earlier run, and what it is called.
 struct earlier_run {
     std::string name;

@@ -7,6 +7,7 @@
 
 #include <genrender/core/error.hpp>
 #include <genrender/core/finite.hpp>
+#include <genrender/core/fingerprint.hpp>
 #include <genrender/core/half_precision.hpp>
 #include <genrender/core/half_storage.hpp>
 #include <genrender/core/index.hpp>
@@ -97,6 +98,7 @@
 #include <genrender/sampling/run_shapes.hpp>
 #include <genrender/sampling/sampler.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
+#include <genrender/sampling/sampler_history.hpp>
 #include <genrender/sampling/storing_denoiser.hpp>
 
 #include <genrender/keyframes/draw_keyframes.hpp>
@@ -137,15 +139,19 @@
 #include <genrender/normalization/normalization_target.hpp>
 #include <genrender/normalization/supported_gain.hpp>
 
+#include <genrender/pipeline/checkpoint.hpp>
 #include <genrender/pipeline/estimate_consensus.hpp>
+#include <genrender/pipeline/finished_step.hpp>
 #include <genrender/pipeline/generative_rendering.hpp>
 #include <genrender/pipeline/memory_plan.hpp>
 #include <genrender/pipeline/pass_latents.hpp>
 #include <genrender/pipeline/progress.hpp>
 #include <genrender/pipeline/render.hpp>
+#include <genrender/pipeline/render_arguments.hpp>
 #include <genrender/pipeline/render_report.hpp>
 #include <genrender/pipeline/render_settings.hpp>
 #include <genrender/pipeline/run_description.hpp>
+#include <genrender/pipeline/run_fingerprint.hpp>
 #include <genrender/pipeline/run_sampler.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/pipeline/sequence_passes.hpp>

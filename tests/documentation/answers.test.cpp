@@ -18,6 +18,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
+#include <sstream>
+#include <string>
 #include <vector>
 
 namespace {
@@ -91,6 +93,30 @@ TEST_SUITE("documentation/answers") {
         // docs:end
         CHECK(result.is_cancelled);
         CHECK(result.z.shape()[0] == 4);
+    }
+
+    TEST_CASE("a run that was killed goes on to the same frames") {
+        analytic_denoiser<float> const phi{{4, 4}};
+        auto const UV = to_uv_view(strip);
+        auto const settings = small_settings();
+        auto const ask = [](genrender::progress const& now) { return now.step < 2; };
+        std::string kept;
+        // docs:begin resume
+        auto const keep = [&](genrender::finished_step<float> const& step) {
+            std::ostringstream stream;
+            genrender::write_checkpoint(stream, step.make_checkpoint()); // step.estimates() shows how it looks so far
+            kept = stream.str();
+        };
+        genrender::render(phi, UV,
+                          {.settings = settings, .observer = ask, .after_step = keep, .model_key = "a red ball"});
+        // Later, in another process:
+        std::istringstream stream(kept);
+        auto const left = genrender::read_checkpoint<float>(stream);
+        auto const result =
+            genrender::render(phi, UV, {.settings = settings, .resume = &left, .model_key = "a red ball"});
+        // docs:end
+        CHECK(left.steps == 2);
+        CHECK(result.z == genrender::render(phi, UV, {.settings = settings}).z);
     }
 
     TEST_CASE("results do not depend on the loop") {

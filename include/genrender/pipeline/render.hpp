@@ -12,6 +12,10 @@
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/maps/cell_extents.hpp>
 #include <genrender/maps/cell_shares.hpp>
+#include <genrender/pipeline/checkpoint.hpp>
+#include <genrender/pipeline/finished_step.hpp>
+#include <genrender/pipeline/render_arguments.hpp>
+#include <genrender/pipeline/run_fingerprint.hpp>
 #include <genrender/pipeline/run_sampler.hpp>
 #include <genrender/pipeline/sequence_denoiser.hpp>
 #include <genrender/pipeline/shapes_of_run.hpp>
@@ -25,7 +29,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -92,40 +96,18 @@ void require_finite_coordinates(Maps const& UV) {
 }
 
 /// Number of frames that a run of `frames` frames by a method gives to the denoiser in all its evaluations, keyframes
-/// counted anew in each step that has them. Throws value_error if a step's keyframes cannot be drawn.
+/// counted anew in each step that has them; of one that begins at step `first`, in what is left. Throws value_error if a
+/// step's keyframes cannot be drawn.
 template <class Real, class Method = generative_rendering>
-std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t frames, Method const& method = {}) {
+std::size_t frames_to_denoise(render_settings<Real> const& settings, std::size_t frames, Method const& method = {},
+                              std::size_t first = 0) {
     std::size_t total = 0;
-    for (std::size_t step = 0; step < settings.steps; ++step) {
-        total += evaluations_at(settings.sampler, step) * (frames + method.keyframes(settings, frames, step).size());
+    for (std::size_t step = first; step < settings.steps; ++step) {
+        total +=
+            evaluations_at(settings.sampler, step - first) * (frames + method.keyframes(settings, frames, step).size());
     }
     return total;
 }
-
-/// What a run needs besides a denoiser and maps, by name; all have defaults. `Map` is the
-/// correspondence map of a feature resolution.
-template <class Real, class Method, correspondence_map Map>
-struct render_arguments {
-    render_settings<Real> settings{}; ///< how it is rendered
-    /// What is done in a step: a sequence_method.
-    Method method{};
-    /// Compiles the correspondence map of a feature grid; empty for the one that `settings.correspondence` chooses.
-    std::function<Map(grid_extents)> make_map{};
-    /// Told how far the run is; false ends it.
-    progress_observer observer{};
-    /// Runs what can be done at the same time; the frames are the same with every loop, bit for bit.
-    any_loop loop{};
-};
-
-/// What a run gives.
-template <class Real>
-struct render_result {
-    /// z_0 [frames, channels, height, width], the clean latents of all frames, for the user's decoder. Of a run that was
-    /// cancelled, z after its last whole step; before the first, the initial noise z_T.
-    latents<Real> z;
-    render_report report;      ///< what happened on the way, as far as the run came
-    bool is_cancelled = false; ///< whether the observer ended the run
-};
 
 /// Says that settings of one scalar do not fit a denoiser of another; never run.
 template <class Real>
@@ -188,8 +170,8 @@ GENRENDER_INSTANCE(make_blend_plan<double, chosen_correspondence<2>>);
 ///
 /// A preparable_denoiser is told the shapes of the run before its first call. Noise is made in host memory; latents of a
 /// latent_lender are its engine's from there to the end. Throws value_error or shape_error for
-/// arguments that do not fit, before anything is run, and what the denoiser throws. A run that its observer ends returns
-/// what there is.
+/// arguments that do not fit, a checkpoint of another run among them, before anything is run, and what the denoiser or
+/// after_step throws. A run that its observer ends returns what there is.
 template <class Method = generative_rendering, class Map = void, class Phi, class Maps>
 render_result<typename detail::real_type_of<Phi>::type>
 render(Phi const& phi, Maps const& UV,
@@ -233,20 +215,34 @@ render(Phi const& phi, Maps const& UV,
         cell_extents("render", UV.grid(), grid);
         auto const sigmas = karras_schedule<Real>(settings.steps, settings.sigma_min, settings.sigma_max, settings.rho);
         auto const N = UV.frame_count();
-        auto const total = frames_to_denoise(settings, N, method);
+        auto const total =
+            frames_to_denoise(settings, N, method, arguments.resume != nullptr ? arguments.resume->steps : 0);
 
         auto const start = std::chrono::steady_clock::now();
         render_result<Real> result{latents<Real>::from_shape({N, phi.latent_channels(), grid.height, grid.width}), {}};
         result.report.kernels = chosen_vector_target();
         report_writer report(result.report);
+        std::optional<run_fingerprint> of_run; // of whoever asks
+        auto const fingerprint = [&]() -> run_fingerprint const& {
+            return of_run ? *of_run
+                          : of_run.emplace(fingerprint_of<map_type>(phi, UV, settings, method, arguments.model_key));
+        };
 
         // z_UV ~ N(0, I); z = z_T = sigma_T pi_UV(z_UV)
-        std::vector<frame_index> frames;
-        for (std::uint32_t i = 0; i < N; ++i) {
-            frames.push_back({i});
+        if (arguments.resume == nullptr) {
+            std::vector<frame_index> frames;
+            for (std::uint32_t i = 0; i < N; ++i) {
+                frames.push_back({i});
+            }
+            initial_noise(to_view(result.z), UV, frames, settings.noise, loop);
+            result.z *= sigmas.front();
+        } else {
+            require_resumable(*arguments.resume, fingerprint(),
+                              {N, std::size_t{phi.latent_channels()}, grid.height, grid.width}, settings.steps,
+                              remembers_estimates(settings.sampler));
+            result.z = arguments.resume->z;
+            result.report = arguments.resume->report;
         }
-        initial_noise(to_view(result.z), UV, frames, settings.noise, loop);
-        result.z *= sigmas.front();
 
         auto const background = background_mask(UV, grid);
         auto const shares = uses_consensus(settings) && settings.consensus.fades_at_silhouettes
@@ -273,7 +269,19 @@ render(Phi const& phi, Maps const& UV,
         progress_meter meter(settings.steps, total, arguments.observer);
         sequence_denoiser const D(phi, maps, to_view(background), std::span<Real const>(sigmas), settings, loop, meter,
                                   report, method, to_view(shares));
-        result.is_cancelled = run_sampler<Real>(phi, D, result.z, sigmas, settings.sampler);
+        step_observer<Real> told;
+        if (arguments.after_step) {
+            told = [&](std::size_t step, auto const& z, auto const& x0) {
+                arguments.after_step({step, settings.steps, z, x0, [&] {
+                                          checkpoint<Real> here{step + 1, z(), {}, fingerprint(), result.report};
+                                          if (remembers_estimates(settings.sampler)) {
+                                              here.x0_last = x0();
+                                          }
+                                          return here;
+                                      }});
+            };
+        }
+        result.is_cancelled = run_sampler<Real>(phi, D, result.z, sigmas, settings.sampler, told, arguments.resume);
         return result;
     }
 }

@@ -7,10 +7,11 @@
 #include <genrender/sampling/euler.hpp>
 #include <genrender/sampling/latent_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
+#include <genrender/sampling/sampler_history.hpp>
 
 #include <cmath>
 #include <cstddef>
-#include <optional>
+#include <type_traits>
 #include <utility>
 
 namespace genrender {
@@ -35,26 +36,28 @@ void take_extrapolated_step(Latents& z, Latents const& x0, Latents const& x0_las
 /// What `Latents` and `after_step` are, what is kept and what is thrown: see euler.
 template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
     requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
-Latents dpmpp_2m(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+Latents dpmpp_2m(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {},
+                 std::type_identity_t<sampler_history<Latents>>* history = nullptr) {
     using Real = level_type<Sigmas>;
     require_noise_levels("dpmpp_2m", sigmas);
-    // The last clean estimate lives here and dies with the call.
-    std::optional<Latents> x0_last;
-    for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
+    // The last clean estimate lives here and dies with the call, unless the caller holds it.
+    sampler_history<Latents> own;
+    auto* const past = history != nullptr ? history : &own;
+    for (auto i = detail::first_step("dpmpp_2m", past, std::size(sigmas)); i + 1 < std::size(sigmas); ++i) {
         Real const sigma = sigmas[i];
         Real const sigma_next = sigmas[i + 1];
         Latents x0 = detail::estimate<Latents>(D, z, sigmas, i);
         // The step of alg. 2, (sigma_next / sigma) z - (exp(-h) - 1) x0 with h = log(sigma / sigma_next), is
         // Euler's: what makes it second order is that the clean estimate is extrapolated in log sigma to the
         // middle of the step.
-        if (x0_last && sigma_next > 0) {
+        if (i > 0 && past->x0_last && sigma_next > 0) {
             auto const h_last = std::log(sigmas[i - 1] / sigma);
             auto const h = std::log(sigma / sigma_next);
-            detail::take_extrapolated_step(z, x0, *x0_last, h / (2 * h_last), sigma, sigma_next);
+            detail::take_extrapolated_step(z, x0, *past->x0_last, h / (2 * h_last), sigma, sigma_next);
         } else {
             detail::write_euler_step(z, z, x0, sigma, sigma_next);
         }
-        x0_last = std::move(x0);
+        detail::note_step<Latents>(past, i, x0);
         after_step(i, z);
     }
     return z;

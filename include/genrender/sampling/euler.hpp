@@ -6,9 +6,11 @@
 
 #include <genrender/sampling/latent_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
+#include <genrender/sampling/sampler_history.hpp>
 
 #include <concepts>
 #include <cstddef>
+#include <type_traits>
 
 namespace genrender {
 
@@ -38,15 +40,17 @@ Latents euler_step(Latents const& z, Latents const& x0, Real sigma, Real sigma_n
 ///
 /// `Latents` is any value type with Latents + Latents and Real * Latents: a scalar, xt::xtensor, Eigen::Array; or one of
 /// viewed_latents and combined_latents. `after_step(step, z)` is called after each step, counted from 0, and may change z: what it leaves
-/// there is what the next step starts from. Keeps nothing between calls. Throws as require_noise_levels does, and
+/// there is what the next step starts from. Keeps nothing between calls but in `history`, from which it goes on. Throws as require_noise_levels does, and
 /// what D and after_step throw.
 template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
     requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
-Latents euler(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+Latents euler(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {},
+              std::type_identity_t<sampler_history<Latents>>* history = nullptr) {
     require_noise_levels("euler", sigmas);
-    for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
-        Latents const x0 = detail::estimate<Latents>(D, z, sigmas, i);
+    for (auto i = detail::first_step("euler", history, std::size(sigmas)); i + 1 < std::size(sigmas); ++i) {
+        Latents x0 = detail::estimate<Latents>(D, z, sigmas, i);
         detail::write_euler_step(z, z, x0, sigmas[i], sigmas[i + 1]);
+        detail::note_step<Latents>(history, i, x0);
         after_step(i, z);
     }
     return z;

@@ -7,8 +7,10 @@
 #include <genrender/sampling/euler.hpp>
 #include <genrender/sampling/latent_combination.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
+#include <genrender/sampling/sampler_history.hpp>
 
 #include <cstddef>
+#include <type_traits>
 
 namespace genrender {
 
@@ -34,20 +36,23 @@ void take_mean_step(Latents& z, Latents const& x0, Latents const& z_euler, Laten
 /// What `Latents` and `after_step` are, what is kept and what is thrown: see euler.
 template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
     requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
-Latents heun(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+Latents heun(Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {},
+             std::type_identity_t<sampler_history<Latents>>* history = nullptr) {
     using Real = level_type<Sigmas>;
     require_noise_levels("heun", sigmas);
     Latents z_euler = z;
-    for (std::size_t i = 0; i + 1 < std::size(sigmas); ++i) {
+    for (auto i = detail::first_step("heun", history, std::size(sigmas)); i + 1 < std::size(sigmas); ++i) {
         Real const sigma = sigmas[i];
         Real const sigma_next = sigmas[i + 1];
-        Latents const x0 = detail::estimate<Latents>(D, z, sigmas, i);
+        Latents x0 = detail::estimate<Latents>(D, z, sigmas, i);
         if (sigma_next > 0) {
             detail::write_euler_step(z_euler, z, x0, sigma, sigma_next);
-            Latents const x0_next = detail::estimate<Latents>(D, z_euler, sigmas, i + 1);
+            Latents x0_next = detail::estimate<Latents>(D, z_euler, sigmas, i + 1);
             detail::take_mean_step(z, x0, z_euler, x0_next, sigma, sigma_next);
+            detail::note_step<Latents>(history, i, x0_next);
         } else {
             detail::write_euler_step(z, z, x0, sigma, sigma_next);
+            detail::note_step<Latents>(history, i, x0);
         }
         after_step(i, z);
     }

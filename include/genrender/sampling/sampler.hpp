@@ -9,9 +9,11 @@
 #include <genrender/sampling/euler.hpp>
 #include <genrender/sampling/heun.hpp>
 #include <genrender/sampling/sampler_arguments.hpp>
+#include <genrender/sampling/sampler_history.hpp>
 
 #include <cstddef>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace genrender {
@@ -27,18 +29,22 @@ enum class sampler_kind {
 /// dpmpp_2m. Throws as they do, and value_error for a value that names none.
 template <class Denoise, class Latents, noise_levels Sigmas, class AfterStep = nothing_after_step>
     requires(clean_estimator<Denoise, Latents, level_type<Sigmas>>)
-Latents sample(sampler_kind sampler, Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {}) {
+Latents sample(sampler_kind sampler, Denoise&& D, Latents z, Sigmas const& sigmas, AfterStep&& after_step = {},
+               std::type_identity_t<sampler_history<Latents>>* history = nullptr) {
     switch (sampler) {
     case sampler_kind::euler:
-        return euler(D, std::move(z), sigmas, after_step);
+        return euler(D, std::move(z), sigmas, after_step, history);
     case sampler_kind::heun:
-        return heun(D, std::move(z), sigmas, after_step);
+        return heun(D, std::move(z), sigmas, after_step, history);
     case sampler_kind::dpmpp_2m:
-        return dpmpp_2m(D, std::move(z), sigmas, after_step);
+        return dpmpp_2m(D, std::move(z), sigmas, after_step, history);
     }
     throw value_error("sample: sampler is " + std::to_string(static_cast<int>(sampler)) +
                       ", expected euler, heun or dpmpp_2m");
 }
+
+/// Whether a sampler goes on from its last clean estimate (sampler_history::x0_last), not from z alone.
+constexpr bool remembers_estimates(sampler_kind sampler) { return sampler == sampler_kind::dpmpp_2m; }
 
 /// How often a run evaluates D at its noise level i, counted from 0, above level 0. Throws value_error for a value that
 /// names no sampler.
