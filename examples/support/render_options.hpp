@@ -141,7 +141,7 @@ inline render_options parse_render_options(int argc, char const* const* argv,
     input->add_option("--scene", options.scene, "built-in scene: " + detail::listed(scenes::names, ", "))
         ->check(one_of(std::vector<std::string>(scenes::names.begin(), scenes::names.end())))
         ->type_name("NAME");
-    input->add_option("--model", options.model, "animated model file, of any format that assimp reads")
+    input->add_option("--model", options.model, "animated model file: glTF, FBX, Collada, and what else assimp reads")
         ->check(not_empty)
         ->type_name("FILE");
     input
