@@ -8,6 +8,14 @@
 #include <cstdio>
 #include <cstdlib>
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+// What assimp does not give back is not ours.
+extern "C" char const* __lsan_default_suppressions();
+extern "C" char const* __lsan_default_suppressions() { return "leak:libassimp"; }
+#endif
+#endif
+
 int main(int argc, char** argv) {
     // GENRENDER_VECTOR_TARGET may ask for more than this processor has, or for what runs here anyway, a process a case:
     // then ctest calls the test skipped.

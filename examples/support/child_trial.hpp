@@ -63,8 +63,9 @@ template <class Work>
     ::setrlimit(RLIMIT_CORE, &no_core);
     rlimit const time{limits.processor_seconds, limits.processor_seconds + 1};
     ::setrlimit(RLIMIT_CPU, &time);
+    ::alarm(2 * limits.processor_seconds + 10); // who waits for ever uses no processor
     limit_memory(limits.bytes);
-    for (int const signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGXCPU}) {
+    for (int const signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGXCPU, SIGALRM}) {
         std::signal(signal, SIG_DFL);
     }
     try {
@@ -93,7 +94,7 @@ std::optional<std::string> failure_in_child(Work&& work, trial_limits const& lim
     if (child < 0 || ended < 0 || (WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
         return std::nullopt;
     }
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
+    if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM)) {
         return "takes more than " + std::to_string(limits.processor_seconds) + " s";
     }
     if (WIFEXITED(status) && WEXITSTATUS(status) == detail::out_of_memory) {

@@ -31,6 +31,7 @@ public:
         for (auto const& buffer : document.model.buffers) {
             bytes_ += buffer.data.size();
         }
+        require_size();
     }
 
     /// As floats; integers that are normalised become [0, 1] or [-1, 1]. `type` is TINYGLTF_TYPE_VEC3 and the like.
@@ -49,6 +50,38 @@ public:
     }
 
 private:
+    /// Refuses a file whose meshes are too large together before any of them is read.
+    void require_size() const {
+        std::size_t numbers = 0;
+        auto const count = [&](int accessor) {
+            auto const& all = document_->model.accessors;
+            if (accessor >= 0 && static_cast<std::size_t>(accessor) < all.size()) {
+                auto const& one = all[static_cast<std::size_t>(accessor)];
+                auto const width = std::max(1, tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(one.type)));
+                numbers += std::min(one.count, most_numbers) * static_cast<std::size_t>(width);
+            }
+            if (numbers > most_numbers) {
+                refuse_size();
+            }
+        };
+        for (auto const& mesh : document_->model.meshes) {
+            for (auto const& primitive : mesh.primitives) {
+                for (auto const& [name, accessor] : primitive.attributes) {
+                    count(accessor);
+                }
+                for (auto const& target : primitive.targets) {
+                    for (auto const& [name, accessor] : target) {
+                        count(accessor);
+                    }
+                }
+            }
+        }
+    }
+
+    [[noreturn]] void refuse_size() const {
+        document_->refuse("holds more than " + std::to_string(most_numbers) + " numbers, expected a smaller model");
+    }
+
     [[noreturn]] void refuse(int accessor, std::string const& what, std::string const& fault) const {
         document_->refuse("accessor " + std::to_string(accessor) + ", " + what + ", " + fault +
                           ", expected numbers that are all in the file");
@@ -162,7 +195,7 @@ private:
             all = elements(source.bufferView, source.byteOffset, source.count, size * result.width, accessor, what);
         }
         if (source.count > (most_numbers - numbers_) / result.width) {
-            document_->refuse("holds more than " + std::to_string(most_numbers) + " numbers, expected a smaller model");
+            refuse_size();
         }
         numbers_ += source.count * result.width;
         result.values.resize(source.count * result.width);

@@ -44,20 +44,19 @@ public:
     /// The barycentric weights (sum 1, each in [0, 1]) of the triangle's point that is seen through (x, y); nothing if
     /// the triangle is not seen there, in front of the eye.
     std::optional<glm::dvec3> at(glm::dvec2 p) const {
-        glm::dvec3 e;
-        for (std::size_t i = 0; i < 3; ++i) {
-            auto const& line = lines_[i];
-            auto const value = line.x * p.x + line.y * p.y - line.z;
-            if (value < 0 || (value == 0 && !owns_[i])) {
+        double e[3];
+        auto const* const lines = lines_.data();
+        for (int i = 0; i < 3; ++i) {
+            e[i] = lines[i].x * p.x + lines[i].y * p.y - lines[i].z;
+            if (e[i] < 0 || (e[i] == 0 && !owns_[static_cast<std::size_t>(i)])) {
                 return std::nullopt;
             }
-            e[static_cast<int>(i)] = value;
         }
-        auto const sum = e.x + e.y + e.z;
+        auto const sum = e[0] + e[1] + e[2];
         if (!(sum > 0)) {
             return std::nullopt;
         }
-        return e / sum;
+        return glm::dvec3(e[0] / sum, e[1] / sum, e[2] / sum);
     }
 
 private:
