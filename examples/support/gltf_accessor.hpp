@@ -55,11 +55,13 @@ private:
         std::size_t numbers = 0;
         auto const count = [&](int accessor) {
             auto const& all = document_->model.accessors;
-            if (accessor >= 0 && static_cast<std::size_t>(accessor) < all.size()) {
-                auto const& one = all[static_cast<std::size_t>(accessor)];
-                auto const width = std::max(1, tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(one.type)));
-                numbers += std::min(one.count, most_numbers) * static_cast<std::size_t>(width);
+            if (accessor < 0 || static_cast<std::size_t>(accessor) >= all.size() ||
+                all[static_cast<std::size_t>(accessor)].count > bytes_) {
+                return; // which is refused by its name when it is read
             }
+            auto const& one = all[static_cast<std::size_t>(accessor)];
+            auto const width = std::max(1, tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(one.type)));
+            numbers += one.count * static_cast<std::size_t>(width);
             if (numbers > most_numbers) {
                 refuse_size();
             }

@@ -170,6 +170,8 @@ inline model_times choose_times(model_scene const& scene, std::span<std::size_t 
         times.notes.push_back(playing.size() == 1
                                   ? "Plays " + scene.takes()[playing.front()].name + ", one of " + all + "."
                                   : "Plays " + std::to_string(playing.size()) + " together of " + all + ".");
+    } else if (!playing.empty()) {
+        times.notes.push_back("Plays " + detail::text_of(scene.takes()[0]) + ", the file's animation.");
     }
     if (options.frames == 0 && frames < whole) {
         times.notes.push_back("Shows the first " + std::to_string(frames) + " of " + std::to_string(whole) +

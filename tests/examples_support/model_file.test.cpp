@@ -245,7 +245,7 @@ TEST_SUITE("examples_support/model_file") {
 
         CHECK(model.report().objects[0].has_made_uvs);
         CHECK(lines_of(model.report()) ==
-              std::vector<std::string>{"body: 2 triangles, 2 joints.",
+              std::vector<std::string>{"Plays motion (1 s), the file's animation.", "body: 2 triangles, 2 joints.",
                                        "1 object has no usable UVs (body): an atlas of the triangles was made."});
         auto const scene = model.frame({1});
         REQUIRE(scene.objects[0].positions.size() == 6);
@@ -324,7 +324,8 @@ TEST_SUITE("examples_support/model_file") {
         // assimp 5.2 takes the aspect times the vertical angle for the horizontal one: off by 7 % here
         CHECK(model.frame({0}).camera.vertical_fov == doctest::Approx(0.8).epsilon(0.1));
         CHECK(model.report().notes ==
-              std::vector<std::string>{"Looks through the file's camera, which sees 100 % of the model."});
+              std::vector<std::string>{"Looks through the file's camera, which sees 100 % of the model.",
+                                       "Plays motion (1 s), the file's animation."});
 
         // Behind the model it sees nothing
         file.nodes = R"({"name": "root", "children": [1, 2]}, {"name": "n", "mesh": 0},
@@ -332,7 +333,8 @@ TEST_SUITE("examples_support/model_file") {
         auto const fitted = load(folder, file, {.time = {.frames = 2}});
         check_in_view(fitted, 1);
         CHECK(fitted.report().notes ==
-              std::vector<std::string>{"The file's camera is not used: it sees 0 % of the model."});
+              std::vector<std::string>{"The file's camera is not used: it sees 0 % of the model.",
+                                       "Plays motion (1 s), the file's animation."});
         check_near(position_of(load(folder, file, {.time = {.frames = 2}, .view = model_view::file}).frame({1}).camera),
                    {0.5f, 0.5f, -6});
 
@@ -369,7 +371,7 @@ TEST_SUITE("examples_support/model_file") {
         auto const fitted = load_model(dae, {.time = {.frames = 2}});
         check_in_view(fitted, 1);
         CHECK(filled_share(fitted.frame({0}).camera, fitted.frame({0}).objects[0].positions, 1) > 0.05);
-        REQUIRE(fitted.report().notes.size() == 1);
+        REQUIRE(fitted.report().notes.size() == 2);
         auto const& note = fitted.report().notes[0];
         CHECK(note.rfind("The file's camera top is not used: the model fills ", 0) == 0);
         CHECK(note.find(" % of its picture.") != std::string::npos);
@@ -392,7 +394,8 @@ TEST_SUITE("examples_support/model_file") {
         // One that is asked for is used even if it sees nothing, which is said
         auto const away = load_model(dae, {.time = {.frames = 2}, .view = model_view::file, .camera = "away"});
         CHECK(away.report().notes ==
-              std::vector<std::string>{"Looks through the file's camera away, which sees 0 % of the model."});
+              std::vector<std::string>{"Looks through the file's camera away, which sees 0 % of the model.",
+                                       "Plays animation (1 s), the file's animation."});
         CHECK_THROWS_WITH_AS(load_model(dae, {.time = {.frames = 2}, .view = model_view::file, .camera = "Far"}),
                              "load_model: options.camera is Far, expected a camera of the file: near, far, away",
                              value_error);

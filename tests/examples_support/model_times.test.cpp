@@ -99,7 +99,7 @@ TEST_SUITE("examples_support/model_times") {
         CHECK(times.frames_per_second == doctest::Approx(10));
         CHECK(times.duration == doctest::Approx(0.5));
         CHECK(times.name == "Walk");
-        CHECK(times.notes.empty());
+        CHECK(times.notes == std::vector<std::string>{"Plays Walk (0.5 s), the file's animation."});
     }
 
     TEST_CASE("a long take is cut at 48 frames unless a rate is asked for and that is said") {
@@ -107,12 +107,13 @@ TEST_SUITE("examples_support/model_times") {
         auto const cut = times_of(take, {.frames = 0});
         CHECK(cut.seconds.size() == 48);
         CHECK(cut.seconds.back() == doctest::Approx(47.0 / 24));
-        CHECK(cut.notes == std::vector<std::string>{"Shows the first 48 of 240 frames; a number of frames or a rate "
-                                                    "shows the whole."});
+        CHECK(cut.notes == std::vector<std::string>{
+                               "Plays Walk (10 s), the file's animation.",
+                               "Shows the first 48 of 240 frames; a number of frames or a rate shows the whole."});
         auto const whole = times_of(take, {.frames = 0, .frames_per_second = 24});
         CHECK(whole.seconds.size() == 240);
-        CHECK(whole.notes.empty());
-        CHECK(times_of({{"Walk", 0, 2, {"a"}}}, {.frames = 0}).notes.empty()); // 48 of 48
+        CHECK(whole.notes.size() == 1);
+        CHECK(times_of({{"Walk", 0, 2, {"a"}}}, {.frames = 0}).notes.size() == 1); // 48 of 48
     }
 
     TEST_CASE("a number of frames is spread over the range and shown as long as it lasts") {
