@@ -13,6 +13,7 @@
 #include <genrender/core/index.hpp>
 #include <genrender/scene/animation.hpp>
 #include <genrender/scene/bounds.hpp>
+#include <genrender/scene/mesh.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -112,7 +113,7 @@ private:
         for (std::size_t i = 0; i < (is_animated ? frame_count() : 1); ++i) {
             for (auto const& object : scene_->objects_at(times_.seconds[i])) {
                 for (auto const& p : object.positions) {
-                    if (!is_place(p)) {
+                    if (!genrender::detail::is_finite(p)) {
                         throw file_error(path_ +
                                          ": moves vertices to places that are not finite, expected coordinates");
                     }

@@ -28,9 +28,6 @@ inline glm::mat4 to_glm(aiMatrix4x4 const& m) {
 inline glm::vec3 to_glm(aiVector3D const& p) { return {p.x, p.y, p.z}; }
 inline glm::quat to_glm(aiQuaternion const& q) { return glm::normalize(glm::quat(q.w, q.x, q.y, q.z)); }
 
-/// Whether all coordinates are finite numbers.
-inline bool is_place(glm::vec3 const& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 /// Between which two keys a time lies, and how far: 0 at `first`, 1 at `second`, beyond them only when extrapolated.
 struct key_interval {
     std::size_t first = 0;
