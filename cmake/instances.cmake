@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # genrender_instances: the library's instances, compiled once for the larger of this project's programs, which link it and call
-# instead of compiling. Half of the tests do without, as most users do. With sanitizers all use it: for the
-# processor's own target, optimised where what calls it is not.
+# instead of compiling. Benchmarks, some tests and those of mixed flags and of the installed package do without, as most users
+# do. With sanitizers all use it: for the processor's own target, optimised where what calls it is not.
 add_library(genrender_instances OBJECT ${CMAKE_CURRENT_LIST_DIR}/instances.cpp)
 # What computes much is optimised where the rest is only compiled quickly, as -Og does.
 set(genrender_computes $<$<CONFIG:Debug>:-O1>)

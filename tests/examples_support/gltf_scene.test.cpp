@@ -854,13 +854,15 @@ TEST_SUITE("examples_support/gltf_scene") {
             }
             auto const name = entry.path().lexically_relative(models).string();
             CAPTURE(name);
-            auto const said = gltf_refusal(entry.path());
-            if (said != "no error") {
+            std::optional<gltf_scene> ours;
+            try {
+                ours.emplace(entry.path());
+            } catch (file_error const& error) {
+                std::string const said = error.what();
                 CHECK(said.rfind(entry.path().string() + ": ", 0) == 0);
                 left_out += "\n  " + said.substr(models.string().size() + 1);
                 continue;
             }
-            gltf_scene const ours(entry.path());
             std::optional<assimp_scene> theirs;
             try {
                 theirs.emplace(entry.path());
@@ -868,7 +870,7 @@ TEST_SUITE("examples_support/gltf_scene") {
                 left_out += "\n  " + name + ": assimp refuses it, we do not";
                 continue;
             }
-            auto const a = ours.objects_at(0);
+            auto const a = ours->objects_at(0);
             auto const b = theirs->objects_at(0);
             REQUIRE(a.size() == b.size());
             for (std::size_t i = 0; i < a.size(); ++i) {

@@ -34,6 +34,7 @@ inline uv_overlap count_uv_overlap(mesh const& surface, std::size_t resolution) 
     auto const T = static_cast<double>(resolution);
     auto const first_texel = [T](double lowest) { return std::clamp(std::floor(lowest - 0.5), 0.0, T); };
     auto const end_texel = [T](double highest) { return std::clamp(std::ceil(highest - 0.5) + 1, 0.0, T); };
+    uv_overlap counts;
     std::vector<std::uint8_t> claims(resolution * resolution);
     for (auto const& t : surface.triangles) {
         std::array<glm::dvec3, 3> corners;
@@ -49,18 +50,20 @@ inline uv_overlap count_uv_overlap(mesh const& surface, std::size_t resolution) 
         auto const end_row = static_cast<std::size_t>(end_texel(upper.y));
         auto const end_column = static_cast<std::size_t>(end_texel(upper.x));
         for (auto row = static_cast<std::size_t>(first_texel(lower.y)); row < end_row; ++row) {
+            auto* const claims_of_row = claims.data() + row * resolution;
+            auto is_entered = false; // A row leaves a triangle once.
             for (auto column = static_cast<std::size_t>(first_texel(lower.x)); column < end_column; ++column) {
                 if (coverage->at({static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5})) {
-                    auto& claim = claims[row * resolution + column];
+                    is_entered = true;
+                    auto& claim = claims_of_row[column];
+                    counts.covered += claim == 0;
+                    counts.overlapping += claim == 1;
                     claim = static_cast<std::uint8_t>(std::min(claim + 1, 2));
+                } else if (is_entered) {
+                    break;
                 }
             }
         }
-    }
-    uv_overlap counts;
-    for (auto const claim : claims) {
-        counts.covered += claim > 0;
-        counts.overlapping += claim > 1;
     }
     return counts;
 }
