@@ -14,6 +14,7 @@
 #include <genrender/scene/animation.hpp>
 #include <genrender/scene/bounds.hpp>
 #include <genrender/scene/mesh.hpp>
+#include <genrender/scene/uv_overlap.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -21,6 +22,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -86,6 +88,7 @@ private:
         report_.notes.insert(report_.notes.end(), times_.notes.begin(), times_.notes.end());
         report_.notes.insert(report_.notes.end(), scene_->notes().begin(), scene_->notes().end());
         report_.objects = scene_->objects();
+        count_overlaps();
         report_.asked_for_uvs = options.uvs == model_uvs::atlas;
     }
 
@@ -97,6 +100,17 @@ private:
             return std::make_shared<gltf_scene>(path, assembly);
         }
         return std::make_shared<assimp_scene>(path, assembly);
+    }
+
+    void count_overlaps() {
+        std::map<mesh const*, uv_overlap> counted; // instances share surfaces
+        for (auto const& object : scene_->objects_at(times_.seconds[0])) {
+            auto const [known, is_new] = counted.try_emplace(object.surface.get());
+            if (is_new) {
+                known->second = count_uv_overlap(*object.surface, 512);
+            }
+            report_.objects[object.object.value].overlap = known->second;
+        }
     }
 
     void choose_cameras(bool is_animated, model_options const& options) {

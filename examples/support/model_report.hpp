@@ -22,7 +22,7 @@ struct model_object_report {
     std::size_t morph_targets = 0;
     bool has_made_uvs = false;   ///< the file has none, or none that can be used, or new ones were asked for
     std::size_t uvs_outside = 0; ///< vertices with u or v outside [0, 1]
-    uv_overlap overlap{};        ///< over a texture of 512 x 512 texels
+    uv_overlap overlap{};        ///< over a texture of 512 x 512 texels; load_model counts it
 
     /// Share of the used texels that several places of the surface claim, in [0, 1].
     double overlapping_share() const {

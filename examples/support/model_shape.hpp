@@ -10,7 +10,6 @@
 #include <genrender/scene/animation.hpp>
 #include <genrender/scene/mesh.hpp>
 #include <genrender/scene/skinning.hpp>
-#include <genrender/scene/uv_overlap.hpp>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -145,7 +144,6 @@ private:
     void count(mesh const& surface) {
         report_.vertices = surface.positions.size();
         report_.triangles = surface.triangles.size();
-        report_.overlap = count_uv_overlap(surface, 512);
         for (auto const& uv : surface.uvs) {
             report_.uvs_outside += uv.x < 0 || uv.x > 1 || uv.y < 0 || uv.y > 1;
         }
