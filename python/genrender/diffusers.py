@@ -11,7 +11,7 @@ import torch
 import torch.nn.functional as nn
 
 from . import NoiseSchedule, draw_keyframes, karras_schedule, sample, scalings
-from .blending import Blending, mix
+from .blending import Blending, mix_keeping_variance
 from .estimates import Estimates, with_preset
 
 
@@ -57,7 +57,8 @@ class SelfAttention:
             alpha *= run.latents_grid_alpha
         if not run.post_attention or alpha == 0:
             return F_hat
-        return mix(F_hat, F_KF, run.blending.rows(Q.shape[2], run.keyframes, run.frames, alpha, Q.device))
+        rows = run.blending.rows(Q.shape[2], run.keyframes, run.frames, alpha, Q.device)
+        return mix_keeping_variance(F_hat, F_KF, rows, run.variance)
 
 
 def temperature(own, keys, power):
@@ -162,7 +163,7 @@ class Run:
 def render(pipe, maps, prompt, *, height, width, preset="vivid", negative_prompt="", steps=50, seed=0, keyframes=None,
            guidance_scale=7.5, conditioning_scale=1.0, clip_skip=None, sampler="euler", alpha=0.7, latents_grid_alpha=None,
            pre_attention=True, post_attention=True, consensus=None, normalization=None, average="quality", noise="uv",
-           frames_per_call=1, hint=None, observer=None, length_correction=0.0):
+           frames_per_call=1, hint=None, observer=None, length_correction=0.0, variance="none"):
     """Consistent clean latents of all frames [frames, channels, height / 8, width / 8], in float32 on the pipe's device.
 
     `maps` are genrender.Maps, with depth where `hint` is None. `hint` is what the ControlNet sees of each frame [frames,
@@ -172,7 +173,8 @@ def render(pipe, maps, prompt, *, height, width, preset="vivid", negative_prompt
     name of the module, multiplied by `latents_grid_alpha` where features are as fine as latents. `consensus` is True, False or
     a dict of arguments of genrender.Consensus. `normalization` is mean, mean_and_supported_deviation, low_band,
     mean_and_deviation (the paper's) or none. `length_correction` is the power of ln(keys) / ln(own keys) on the logits where
-    frames attend to others: 1 is the length-corrected temperature.
+    frames attend to others: 1 is the length-corrected temperature. `variance` is that which eq. 6 keeps: none, total (of all that
+    is averaged) or sources (of keyframes).
     Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
@@ -181,11 +183,13 @@ def render(pipe, maps, prompt, *, height, width, preset="vivid", negative_prompt
             raise ValueError(f"render: {name} is {value}, expected at least {least}")
     if not (math.isfinite(length_correction) and length_correction >= 0):
         raise ValueError(f"render: length_correction is {length_correction}, expected a finite number, 0 or more")
+    if variance not in ("none", "total", "sources"):
+        raise ValueError(f"render: variance is {variance}, expected one of none, total, sources")
     of_preset = with_preset(preset, latents_grid_alpha=latents_grid_alpha, consensus=consensus, normalization=normalization)
     run = Run(pipe, maps, prompt, negative_prompt, clip_skip, height, width, hint, keyframe_count=keyframes, seed=seed,
               steps=steps, guidance_scale=guidance_scale, conditioning_scale=conditioning_scale, alpha=alpha, average=average,
               pre_attention=pre_attention, post_attention=post_attention, frames_per_call=frames_per_call,
-              length_correction=length_correction, **of_preset)
+              length_correction=length_correction, variance=variance, **of_preset)
     sigmas = karras_schedule(steps, run.schedule.sigma_min, run.schedule.sigma_max)
     channels = pipe.unet.config.in_channels
     z = sigmas[0] * torch.from_numpy(maps.initial_noise(channels, *run.grid, seed=seed, kind=noise)).to(run.device)

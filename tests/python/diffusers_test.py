@@ -62,6 +62,9 @@ RUNS = {
     "negative prompt, half a ControlNet": (
         ["--negative-prompt", "grey", "--conditioning", "0.5"], {"negative_prompt": "grey", "conditioning_scale": 0.5}),
     "clip skip": (["--clip-skip", "1"], {"clip_skip": 1}),
+    "total variance kept": (["--variance", "total"], {"variance": "total"}),
+    "variance of sources kept, alpha .4, 3 frames a call": (
+        ["--variance", "sources", "--alpha", "0.4"], {"variance": "sources", "alpha": 0.4, "frames_per_call": 3}),
     "length-corrected temperature to the power of 4": (["--temperature", "4"], {"length_correction": 4}),
 }
 
@@ -202,6 +205,7 @@ class PipelineTest(unittest.TestCase):
                                    ({"keyframes": -1}, "keyframes is -1, expected at least 0"),
                                    ({"frames_per_call": 0}, "frames_per_call is 0, expected at least 1"),
                                    ({"length_correction": -1}, "length_correction is -1, expected a finite number, 0 or more"),
+                                   ({"variance": "half"}, "variance is half, expected one of none, total, sources"),
                                    ({"sampler": "ddim"}, "sampler is ddim"),
                                    ({"preset": "paper"}, "preset is paper, expected one of vivid, plain"),
                                    ({"latents_grid_alpha": 2}, "latents_grid_alpha is 2, expected a share in .0, 1."),
