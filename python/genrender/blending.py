@@ -13,6 +13,10 @@ class Blending(Rows):
         """(index, weights, own) for feature maps of so many tokens; those of one set of frames are kept at a time."""
         return super().rows(tokens, keyframes, frames, alpha, place=lambda array: torch.from_numpy(array).to(device))
 
+    def counts(self, tokens, keyframes, frames, device):
+        """Correspondence.point_counts for feature maps of so many tokens, as a tensor."""
+        return super().counts(tokens, keyframes, frames, place=lambda array: torch.from_numpy(array).to(device))
+
 
 def mix(F_hat, F_KF, rows):
     """F_out = alpha F_bar + (1 - alpha) F_hat (eq. 6), or F_hat where no keyframe covers a token.

@@ -32,11 +32,18 @@ class Rows:
 
     def rows(self, tokens, keyframes, frames, alpha, width=None, place=lambda array: array):
         """(index, weights [frames, tokens, W], own [frames, tokens]) for feature maps of so many tokens, each through `place`."""
+        return self._made((tokens, alpha), keyframes, frames, lambda of: [place(array) for array in of.padded_rows(
+            keyframes, frames, alpha, self.first_fill_share, self.average, width)])
+
+    def counts(self, tokens, keyframes, frames, place=lambda array: array):
+        """Correspondence.point_counts for feature maps of so many tokens, through `place`."""
+        return self._made((tokens, "counts"), keyframes, frames or (), lambda of: place(of.point_counts(keyframes, frames)))
+
+    def _made(self, key, keyframes, frames, make):
+        """What `make` makes of the correspondence of key[0] tokens; kept for one set of frames at a time."""
         frames_of = (tuple(keyframes), tuple(frames))
         if self._rows.get("of") != frames_of:
             self._rows = {"of": frames_of}
-        if (tokens, alpha) not in self._rows:
-            made = self.correspondence(self.grid_of(tokens)).padded_rows(
-                keyframes, frames, alpha, self.first_fill_share, self.average, width)
-            self._rows[tokens, alpha] = [place(array) for array in made]
-        return self._rows[tokens, alpha]
+        if key not in self._rows:
+            self._rows[key] = make(self.correspondence(self.grid_of(key[0])))
+        return self._rows[key]

@@ -6,6 +6,7 @@
 
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/blending/padded_rows.hpp>
+#include <genrender/blending/point_counts.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/noise/initial_noise.hpp>
@@ -210,6 +211,26 @@ auto rows(token_correspondence const& of, std::vector<std::uint32_t> const& keyf
                       array_of<2>(std::move(padded.own), {frames.size(), tokens}));
 }
 
+auto counts(token_correspondence const& of, std::vector<std::uint32_t> const& keyframes,
+            std::optional<std::vector<std::uint32_t>> const& frames) {
+    auto const KF = frames_of(keyframes);
+    auto const joined = frames_of(frames.value_or(keyframes));
+    auto const keys = (KF.size() + (frames ? 1 : 0)) * grid_of(of).size();
+    std::vector<float> all(joined.size() * keys);
+    {
+        nb::gil_scoped_release const others_run;
+        of.with_map([&](auto const& map) {
+            threads()(joined.size(), [&](std::size_t i) {
+                auto const plan = make_blend_plan<float>(map, KF, joined[i], 0.5F);
+                auto const of_frame =
+                    frames ? point_counts(plan.rows(), KF.size()) : point_counts_of_stack(plan.rows(), KF.size());
+                std::copy(of_frame.begin(), of_frame.end(), all.begin() + static_cast<std::ptrdiff_t>(i * keys));
+            });
+        });
+    }
+    return array_of<2>(std::move(all), {joined.size(), keys});
+}
+
 std::vector<std::uint32_t> keyframes(std::size_t count, std::size_t frames, std::size_t step, std::uint64_t seed,
                                      std::string const& drawing) {
     keyframe_settings settings;
@@ -363,7 +384,11 @@ NB_MODULE(_genrender, m) {
              "average"_a = "quality", "width"_a = nb::none(),
              "(index [frames, tokens, W], weights, own [frames, tokens]) of F_out = own F_hat + sum_w weights "
              "F_KF[index], "
-             "where F_KF is [keyframes * tokens, channels]: eq. 6 with alpha folded in.");
+             "where F_KF is [keyframes * tokens, channels]: eq. 6 with alpha folded in.")
+        .def("point_counts", &counts, "keyframes"_a, "frames"_a = nb::none(),
+             "What each key counts for, 1 / the number of keys that show its point [frames, (1 + keyframes) * tokens], "
+             "where frames attend to their own tokens and the keyframes' (eq. 5); without `frames` [keyframes, "
+             "keyframes * tokens], where keyframes attend to each other (eq. 3). Its logarithm is added to logits.");
 
     nb::class_<animation_consensus>(
         m, "Consensus",

@@ -62,6 +62,10 @@ RUNS = {
     "negative prompt, half a ControlNet": (
         ["--negative-prompt", "grey", "--conditioning", "0.5"], {"negative_prompt": "grey", "conditioning_scale": 0.5}),
     "clip skip": (["--clip-skip", "1"], {"clip_skip": 1}),
+    "points counted, temperature": (
+        ["--count-points", "--temperature", "4"], {"counts_points": True, "length_correction": 4}),
+    "points counted, vivid, 2 frames a call": (
+        ["--preset", "vivid", "--count-points"], {"preset": "vivid", "counts_points": True, "frames_per_call": 2}),
     "total variance kept": (["--variance", "total"], {"variance": "total"}),
     "variance of sources kept, alpha .4, 3 frames a call": (
         ["--variance", "sources", "--alpha", "0.4"], {"variance": "sources", "alpha": 0.4, "frames_per_call": 3}),

@@ -78,6 +78,17 @@ class MapsTest(unittest.TestCase):
         self.assertAlmostEqual(own[0, token], 0.4, places=6)
         self.assertEqual((own[0, 0], weights[0, 0].sum()), (1, 0))
 
+    def test_keys_of_one_point_count_together_for_one(self):
+        counts = self.maps.correspondence(TOKENS, TOKENS).point_counts([2, 0], [0])
+        inside = np.zeros((TOKENS, TOKENS), bool)
+        inside[2:6, 1:5] = True
+        in_second = np.roll(inside, 2, 1)
+        expected = np.where([inside, in_second, inside], np.float32(1) / np.float32(3), np.float32(1)).reshape(1, -1)
+        self.assertTrue((counts == expected).all())
+        among = self.maps.correspondence(TOKENS, TOKENS).point_counts([2, 0])
+        expected = np.where([in_second, inside], np.float32(0.5), np.float32(1)).reshape(-1)
+        self.assertTrue((among == [expected, expected]).all())
+
     def test_rows_may_be_as_wide_as_a_graph_needs(self):
         rows = self.maps.correspondence(TOKENS, TOKENS).padded_rows([1], [0], width=5)
         self.assertEqual(rows[0].shape, (1, TOKENS ** 2, 5))
