@@ -45,8 +45,7 @@ engine_case case_of_size(std::size_t size) {
                     pipeline.conditioning(to_view(inverse_depth), {.text = "a red ball on a green checkered ground",
                                                                    .negative = "at night",
                                                                    .guidance_scale = 3}),
-                    guidance.uv,
-                    {}};
+                    guidance.uv};
     run.settings.steps = 4;
     run.settings.sigma_min = static_cast<float>(pipeline.schedule().sigma_min());
     run.settings.sigma_max = static_cast<float>(pipeline.schedule().sigma_max());

@@ -7,8 +7,9 @@ from. NODE_CLASS_MAPPINGS makes nodes of them.
 
 import torch
 
-from . import draw_keyframes, load_exr, normalize_latents
+from . import draw_keyframes, load_exr
 from .blending import Blending, mix
+from .estimates import PRESETS, Estimates, with_preset
 
 
 class UVNoise:
@@ -35,11 +36,13 @@ def require_frames(function, found, expected):
 class Patches:
     """What is called instead of the network, before and after each of its self-attention modules, and after guidance."""
 
-    def __init__(self, maps, keyframes=4, seed=0, alpha=0.7, pre_attention=True, post_attention=True, normalization="mean",
-                 frames_per_call=4):
+    def __init__(self, maps, preset="vivid", keyframes=4, seed=0, alpha=0.7, latents_grid_alpha=None, pre_attention=True,
+                 post_attention=True, consensus=None, normalization=None, frames_per_call=4):
+        self.of_preset = with_preset(preset, latents_grid_alpha=latents_grid_alpha, consensus=consensus,
+                                     normalization=normalization)
         self.maps, self.keyframe_count, self.seed, self.alpha = maps, min(keyframes, maps.frames), seed, alpha
-        self.pre_attention, self.post_attention, self.normalization = pre_attention, post_attention, normalization
-        self.frames_per_call, self.blending, self.frames, self.kept = frames_per_call, None, None, {}
+        self.pre_attention, self.post_attention = pre_attention, post_attention
+        self.frames_per_call, self.made_for, self.frames, self.kept = frames_per_call, None, None, {}
 
     def patch(self, model):
         """A copy of a ModelPatcher with these patches."""
@@ -55,11 +58,10 @@ class Patches:
         x, c, count = args["input"], args["c"], self.maps.frames
         self.branches = len(args["cond_or_uncond"])
         require_frames("unet_wrapper", len(x) // self.branches, count)
-        if self.blending is None or self.blending.latent_grid != tuple(x.shape[-2:]):
-            self.blending = Blending(self.maps, tuple(x.shape[-2:]))
         sigmas = c["transformer_options"]["sample_sigmas"]
-        step = int((sigmas[1:-1] >= args["timestep"][0].to(sigmas)).sum())
-        self.kept, self.keyframes = {}, draw_keyframes(self.keyframe_count, count, step, self.seed)
+        self.make_for(tuple(x.shape[-2:]), len(sigmas) - 1)
+        self.step = int((sigmas[1:-1] >= args["timestep"][0].to(sigmas)).sum())
+        self.kept, self.keyframes = {}, draw_keyframes(self.keyframe_count, count, self.step, self.seed)
         out = torch.empty_like(x)
 
         def run(frames, is_recording):
@@ -75,6 +77,14 @@ class Patches:
         finally:
             self.frames, self.kept = None, {}
         return out
+
+    def make_for(self, grid, steps):
+        """Makes what a run of so many steps needs whose latents have this height and width, unless it is there."""
+        if self.made_for != (grid, steps):
+            self.blending = Blending(self.maps, grid)
+            self.estimates = Estimates(self.blending, steps, self.seed, self.of_preset["consensus"],
+                                       self.of_preset["normalization"])
+            self.made_for = grid, steps
 
     def takes_part(self, extra_options):
         """Whether it is the decoder of a call of ours."""
@@ -106,16 +116,19 @@ class Patches:
         if self.is_recording:
             self.kept[at, "F_KF"] = F.flatten(1, 2)
             return n
-        rows = self.blending.rows(F.shape[2], self.keyframes, self.frames, self.alpha, n.device)
+        alpha = self.alpha * (self.of_preset["latents_grid_alpha"] if self.blending.is_latents(F.shape[2]) else 1)
+        if alpha == 0:
+            return n
+        rows = self.blending.rows(F.shape[2], self.keyframes, self.frames, alpha, n.device)
         return mix(F, self.kept[at, "F_KF"], rows).flatten(0, 1)
 
     def post_cfg(self, args):
-        """Latent normalisation of the clean estimates."""
+        """The consensus and the normalisation of the clean estimates."""
         x0 = args["denoised"]
-        if self.normalization is None:
+        if self.estimates.are_left:
             return x0
         on_host = x0.detach().float().cpu().contiguous().clone()
-        normalize_latents(on_host.numpy(), self.maps.background(*x0.shape[-2:]), self.normalization)
+        self.estimates.finish(on_host.numpy(), self.step)
         return on_host.to(x0)
 
 
@@ -166,13 +179,13 @@ class ModelNode:
 
     @classmethod
     def INPUT_TYPES(cls):
-        return {"required": {"model": ("MODEL",), "maps": ("GENRENDER_MAPS",),
+        return {"required": {"model": ("MODEL",), "maps": ("GENRENDER_MAPS",), "preset": (list(PRESETS),),
                              "keyframes": ("INT", {"default": 4, "min": 1, "max": 64}),
                              "seed": ("INT", {"default": 0, "min": 0, "max": 2 ** 64 - 1}),
                              "alpha": ("FLOAT", {"default": 0.7, "min": 0.0, "max": 1.0, "step": 0.05})}}
 
-    def patch(self, model, maps, keyframes, seed, alpha):
-        return (patched(model, maps, keyframes=keyframes, seed=seed, alpha=alpha),)
+    def patch(self, model, maps, preset, keyframes, seed, alpha):
+        return (patched(model, maps, preset=preset, keyframes=keyframes, seed=seed, alpha=alpha),)
 
 
 NODE_CLASS_MAPPINGS = {"GenrenderMaps": MapsNode, "GenrenderNoise": NoiseNode, "GenrenderModel": ModelNode}

@@ -10,8 +10,9 @@ import math
 import torch
 import torch.nn.functional as nn
 
-from . import NoiseSchedule, draw_keyframes, karras_schedule, normalize_latents, sample, scalings
-from .blending import Blending, mix
+from . import NoiseSchedule, draw_keyframes, karras_schedule, sample, scalings
+from .blending import Blending, mix_keeping_variance
+from .estimates import Estimates, with_preset
 
 
 class SelfAttention:
@@ -32,9 +33,15 @@ class SelfAttention:
 
     def record(self, heads, Q, K, V):
         """F of keyframes that attend to each other (eq. 3); keeps K_KF, V_KF, F_KF [branches, keyframes * tokens, ...]."""
-        if self.run.pre_attention:
-            F = attend(heads, Q.flatten(1, 2), K.flatten(1, 2), V.flatten(1, 2),
-                       temperature(K.shape[2], K.shape[1] * K.shape[2], self.run.length_correction)).view_as(Q)
+        run = self.run
+        if run.pre_attention:
+            factor = temperature(K.shape[2], K.shape[1] * K.shape[2], run.length_correction)
+            all_of_them = [x.flatten(1, 2) for x in (K, V)]
+            if run.counts_points:
+                counts = run.blending.counts(Q.shape[2], run.keyframes, None, Q.device)
+                F = attend(heads, Q, *(x[:, None].expand(-1, Q.shape[1], -1, -1) for x in all_of_them), factor, counts)
+            else:
+                F = attend(heads, Q.flatten(1, 2), *all_of_them, factor).view_as(Q)
         else:
             F = attend(heads, Q, K, V)
         self.kept = [x.flatten(1, 2) for x in (K, V, F)]
@@ -48,13 +55,17 @@ class SelfAttention:
         K_KF, V_KF, F_KF = self.kept
         if run.pre_attention:
             joined = [torch.cat([x, x_KF[:, None].expand(-1, x.shape[1], -1, -1)], 2) for x, x_KF in ((K, K_KF), (V, V_KF))]
-            F_hat = attend(heads, Q, *joined, temperature(K.shape[2], joined[0].shape[2], run.length_correction))
+            counts = run.blending.counts(Q.shape[2], run.keyframes, run.frames, Q.device) if run.counts_points else None
+            F_hat = attend(heads, Q, *joined, temperature(K.shape[2], joined[0].shape[2], run.length_correction), counts)
         else:
             F_hat = attend(heads, Q, K, V)
         alpha = run.alpha(run.step, self.name) if callable(run.alpha) else run.alpha
+        if run.blending.is_latents(Q.shape[2]):
+            alpha *= run.latents_grid_alpha
         if not run.post_attention or alpha == 0:
             return F_hat
-        return mix(F_hat, F_KF, run.blending.rows(Q.shape[2], run.keyframes, run.frames, alpha, Q.device))
+        rows = run.blending.rows(Q.shape[2], run.keyframes, run.frames, alpha, Q.device)
+        return mix_keeping_variance(F_hat, F_KF, rows, run.variance)
 
 
 def temperature(own, keys, power):
@@ -62,11 +73,15 @@ def temperature(own, keys, power):
     return 1.0 if power == 0 or keys == own or own < 2 else (math.log(keys) / math.log(own)) ** power
 
 
-def attend(heads, Q, K, V, factor=1.0):
-    """Attn(Q, K, V) (eq. 1) of [..., tokens, channels], logits times `factor`; fused kernels take exactly four axes."""
+def attend(heads, Q, K, V, factor=1.0, counts=None):
+    """Attn(Q, K, V) (eq. 1) of [..., tokens, channels], logits times `factor`; fused kernels take exactly four axes.
+
+    `counts` [frames, keys] are what keys count for, where Q is [branches, frames, tokens, channels].
+    """
     q, k, v = (x.flatten(0, -3).unflatten(-1, (heads, -1)).transpose(1, 2) for x in (Q, K, V))
     scale = None if factor == 1.0 else factor / math.sqrt(q.shape[-1])
-    return nn.scaled_dot_product_attention(q, k, v, scale=scale).transpose(1, 2).reshape(Q.shape)
+    mask = None if counts is None else counts.log().to(q.dtype).repeat(len(Q), 1)[:, None, None]
+    return nn.scaled_dot_product_attention(q, k, v, mask, scale=scale).transpose(1, 2).reshape(Q.shape)
 
 
 class Run:
@@ -80,7 +95,7 @@ class Run:
             raise ValueError(f"render: height and width are {height} and {width}, expected multiples of {scale}")
         self.grid = height // scale, width // scale
         self.blending = Blending(maps, self.grid, self.average)
-        self.background = maps.background(*self.grid)
+        self.estimates = Estimates(self.blending, self.steps, self.seed, self.consensus, self.normalization)
         if hint is None:
             hint = torch.from_numpy(maps.inverse_depth(height, width))[:, None].repeat(1, 3, 1, 1)
         self.hint = hint.to(self.device, pipe.controlnet.dtype)
@@ -113,7 +128,7 @@ class Run:
                 module.set_processor(before[name])
 
     def D(self, z, sigma, step):
-        """The clean estimates of all frames of z [frames, channels, height, width], normalised: the body of alg. 1's loop."""
+        """The clean estimates of all frames of z [frames, channels, height, width]: the body of alg. 1's loop."""
         self.step, self.control = step, {}
         if self.keyframe_count > 0:
             self.keyframes = draw_keyframes(self.keyframe_count, len(z), step, self.seed)
@@ -121,11 +136,11 @@ class Run:
         parts = [self.estimate(z, sigma, list(range(i, min(i + self.frames_per_call, len(z)))), is_recording=False)
                  for i in range(0, len(z), self.frames_per_call)]
         x0 = torch.cat(parts)
-        if self.normalization is not None:
-            on_host = x0.cpu().contiguous()
-            normalize_latents(on_host.numpy(), self.background, self.normalization)
-            x0 = on_host.to(x0.device)
-        return x0
+        if self.estimates.are_left:
+            return x0
+        on_host = x0.cpu().contiguous()
+        self.estimates.finish(on_host.numpy(), step)
+        return on_host.to(x0.device)
 
     def estimate(self, z, sigma, frames, is_recording):
         """Clean estimates of some frames by UNet and ControlNet, [uncond; cond] stacked as diffusers does."""
@@ -156,18 +171,22 @@ class Run:
 
 
 @torch.no_grad()
-def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, seed=0, keyframes=None, guidance_scale=7.5,
-           conditioning_scale=1.0, clip_skip=None, sampler="euler", alpha=0.7, pre_attention=True, post_attention=True,
-           normalization="mean", average="quality", noise="uv", frames_per_call=1, hint=None, observer=None,
-           length_correction=0.0):
+def render(pipe, maps, prompt, *, height, width, preset="vivid", negative_prompt="", steps=50, seed=0, keyframes=None,
+           guidance_scale=7.5, conditioning_scale=1.0, clip_skip=None, sampler="euler", alpha=0.7, latents_grid_alpha=None,
+           pre_attention=True, post_attention=True, consensus=None, normalization=None, average="quality", noise="uv",
+           frames_per_call=1, hint=None, observer=None, length_correction=0.0, counts_points=False,
+           variance="none"):
     """Consistent clean latents of all frames [frames, channels, height / 8, width / 8], in float32 on the pipe's device.
 
     `maps` are genrender.Maps, with depth where `hint` is None. `hint` is what the ControlNet sees of each frame [frames,
     channels, height, width], as a tensor: the depth of the maps, repeated over three channels, where it is None. Of `keyframes`
-    None is 4, or all frames if these are fewer; 0 renders every frame by itself, as the pipeline does. `alpha` is a number or a
-    function of step and name of the module; `normalization` is mean, mean_and_supported_deviation, low_band,
-    mean_and_deviation (the paper's) or None. `length_correction` is the power of ln(keys) / ln(own keys) on the logits where
-    frames attend to others: 1 is the length-corrected temperature.
+    None is 4, or all frames if these are fewer; 0 injects nothing. `preset` is vivid or plain (alg. 1 alone); it decides on
+    `latents_grid_alpha`, `consensus` and `normalization` where these are None. `alpha` is a number or a function of step and
+    name of the module, multiplied by `latents_grid_alpha` where features are as fine as latents. `consensus` is True, False or
+    a dict of arguments of genrender.Consensus. `normalization` is mean, mean_and_supported_deviation, low_band,
+    mean_and_deviation (the paper's) or none. `length_correction` is the power of ln(keys) / ln(own keys) on the logits where
+    frames attend to others: 1 is the length-corrected temperature. With `counts_points` keys that show one surface point count
+    together for one. `variance` is that which eq. 6 keeps: none, total (of all that is averaged) or sources (of keyframes).
     Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
@@ -176,10 +195,13 @@ def render(pipe, maps, prompt, *, height, width, negative_prompt="", steps=50, s
             raise ValueError(f"render: {name} is {value}, expected at least {least}")
     if not (math.isfinite(length_correction) and length_correction >= 0):
         raise ValueError(f"render: length_correction is {length_correction}, expected a finite number, 0 or more")
+    if variance not in ("none", "total", "sources"):
+        raise ValueError(f"render: variance is {variance}, expected one of none, total, sources")
+    of_preset = with_preset(preset, latents_grid_alpha=latents_grid_alpha, consensus=consensus, normalization=normalization)
     run = Run(pipe, maps, prompt, negative_prompt, clip_skip, height, width, hint, keyframe_count=keyframes, seed=seed,
-              guidance_scale=guidance_scale, conditioning_scale=conditioning_scale, alpha=alpha, average=average,
-              pre_attention=pre_attention, post_attention=post_attention, normalization=normalization,
-              frames_per_call=frames_per_call, length_correction=length_correction)
+              steps=steps, guidance_scale=guidance_scale, conditioning_scale=conditioning_scale, alpha=alpha, average=average,
+              pre_attention=pre_attention, post_attention=post_attention, frames_per_call=frames_per_call,
+              length_correction=length_correction, counts_points=counts_points, variance=variance, **of_preset)
     sigmas = karras_schedule(steps, run.schedule.sigma_min, run.schedule.sigma_max)
     channels = pipe.unet.config.in_channels
     z = sigmas[0] * torch.from_numpy(maps.initial_noise(channels, *run.grid, seed=seed, kind=noise)).to(run.device)

@@ -6,7 +6,8 @@ The graphs have the inputs and outputs that genrender.add_feature_io adds; `rend
 
 import numpy as np
 
-from . import NoiseSchedule, draw_keyframes, karras_schedule, normalize_latents, sample, scalings
+from . import NoiseSchedule, draw_keyframes, karras_schedule, sample, scalings
+from .estimates import Estimates, with_preset
 from .rows import Rows
 
 
@@ -16,10 +17,10 @@ class Run:
     def __init__(self, maps, graph, grid, **settings):
         self.__dict__.update(settings)
         self.graph, self.rows = graph, Rows(maps, grid, self.average)
-        self.background = maps.background(*grid)
+        self.estimates = Estimates(self.rows, self.steps, self.seed, self.consensus, self.normalization)
 
     def D(self, z, sigma, step):
-        """The clean estimates of all frames of z [frames, channels, height, width], normalised: the body of alg. 1's loop."""
+        """The clean estimates of all frames of z [frames, channels, height, width]: the body of alg. 1's loop."""
         c_skip, c_out, c_in = scalings(self.prediction, sigma)
         t = np.array([self.schedule.t_of(sigma)], np.float32)
         keyframes = draw_keyframes(self.keyframes, len(z), step, self.seed)
@@ -33,8 +34,7 @@ class Run:
                 inputs = {"z": x[frames], "t": t} | self.injected(recorded[branch], keyframes, frames)
                 F[frames] += np.float32(weight) * self.graph("injected", frames, branch, inputs)["v"]
         x0 = np.float32(c_skip) * z + np.float32(c_out) * F
-        if self.normalization is not None:
-            normalize_latents(x0, self.background, self.normalization)
+        self.estimates.finish(x0, step)
         return x0
 
     def injected(self, recorded, keyframes, frames):
@@ -44,15 +44,16 @@ class Run:
             if not name.startswith("genrender.") or not name.endswith(".f"):
                 continue
             at, tokens = name.removesuffix("f"), f.shape[1]
-            index, weights, own = self.rows.rows(tokens, keyframes, frames, self.alpha, self.width)
+            alpha = self.alpha * (self.latents_grid_alpha if self.rows.is_latents(tokens) else 1)
+            index, weights, own = self.rows.rows(tokens, keyframes, frames, alpha, self.width)
             inputs |= {at + "f_KF": f, at + "F_KF": recorded[at + "F"], at + "index": index.reshape(-1, self.width),
                        at + "weights": weights.reshape(-1, 1, self.width), at + "own": own[..., None]}
         return inputs
 
 
-def render(maps, graph, *, channels, grid, steps=50, seed=0, keyframes=None, frames_per_call=1, alpha=0.7, branch_weights=(1,),
-           prediction="epsilon", schedule=None, sampler="euler", normalization="mean", average="quality", noise="uv",
-           width=None, observer=None):
+def render(maps, graph, *, channels, grid, preset="vivid", steps=50, seed=0, keyframes=None, frames_per_call=1, alpha=0.7,
+           latents_grid_alpha=None, branch_weights=(1,), prediction="epsilon", schedule=None, sampler="euler", consensus=None,
+           normalization=None, average="quality", noise="uv", width=None, observer=None):
     """Consistent clean latents of all frames [frames, channels, *grid], as a NumPy array of float32.
 
     `graph(name, frames, branch, inputs)` runs the graph `name`, "keyframe" or "injected", for these numbers of frames and a
@@ -61,16 +62,18 @@ def render(maps, graph, *, channels, grid, steps=50, seed=0, keyframes=None, fra
     takes, and leaves out inputs that the graph does not have. It is called with `keyframes` frames or `frames_per_call`, the
     last time of a pass with what is left. Of `keyframes` None is 4, or all frames if these are fewer. `width` is that of the
     padded rows, `keyframes` where it is None. `branch_weights` are of the outputs of all branches: (1 - s, s) is guidance of
-    scale s. `schedule` is a NoiseSchedule, of Stable Diffusion where it is None. Raises ValueError for what does not fit.
+    scale s. `schedule` is a NoiseSchedule, of Stable Diffusion where it is None. `preset`, and `latents_grid_alpha`, `consensus`
+    and `normalization`, are those of genrender.diffusers.render. Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
     for name, value in (("keyframes", keyframes), ("frames_per_call", frames_per_call), ("branches", len(branch_weights))):
         if value < 1:
             raise ValueError(f"render: {name} is {value}, expected at least 1")
     schedule = NoiseSchedule.scaled_linear() if schedule is None else schedule
-    run = Run(maps, graph, grid, keyframes=keyframes, seed=seed, frames_per_call=frames_per_call, alpha=alpha,
-              branch_weights=branch_weights, prediction=prediction, schedule=schedule, normalization=normalization,
-              average=average, width=keyframes if width is None else width)
+    of_preset = with_preset(preset, latents_grid_alpha=latents_grid_alpha, consensus=consensus, normalization=normalization)
+    run = Run(maps, graph, grid, keyframes=keyframes, seed=seed, steps=steps, frames_per_call=frames_per_call, alpha=alpha,
+              branch_weights=branch_weights, prediction=prediction, schedule=schedule, average=average,
+              width=keyframes if width is None else width, **of_preset)
     sigmas = karras_schedule(steps, schedule.sigma_min, schedule.sigma_max)
     z = np.float32(sigmas[0]) * maps.initial_noise(channels, *grid, seed=seed, kind=noise)
     return sample(sampler, run.D, z, sigmas, observer)

@@ -6,7 +6,7 @@ class Rows:
     """The correspondence of an animation at every feature grid, and the rows of one set of frames at a time."""
 
     def __init__(self, maps, latent_grid, average="quality", first_fill_share=0.5):
-        self.maps, self.latent_grid = maps, latent_grid
+        self.maps, self.latent_grid = maps, tuple(latent_grid)
         self.average, self.first_fill_share = average, first_fill_share
         self._correspondences, self._rows = {}, {}
 
@@ -20,16 +20,30 @@ class Rows:
                              "halved a number of times")
         return height, width
 
+    def is_latents(self, tokens):
+        """Whether a feature map of so many tokens is as fine as the latents."""
+        return tokens == self.latent_grid[0] * self.latent_grid[1]
+
+    def correspondence(self, grid):
+        """Which token of which frame shows which surface point, on a grid of this height and width; made once."""
+        if grid not in self._correspondences:
+            self._correspondences[grid] = self.maps.correspondence(*grid)
+        return self._correspondences[grid]
+
     def rows(self, tokens, keyframes, frames, alpha, width=None, place=lambda array: array):
         """(index, weights [frames, tokens, W], own [frames, tokens]) for feature maps of so many tokens, each through `place`."""
+        return self._made((tokens, alpha), keyframes, frames, lambda of: [place(array) for array in of.padded_rows(
+            keyframes, frames, alpha, self.first_fill_share, self.average, width)])
+
+    def counts(self, tokens, keyframes, frames, place=lambda array: array):
+        """Correspondence.point_counts for feature maps of so many tokens, through `place`."""
+        return self._made((tokens, "counts"), keyframes, frames or (), lambda of: place(of.point_counts(keyframes, frames)))
+
+    def _made(self, key, keyframes, frames, make):
+        """What `make` makes of the correspondence of key[0] tokens; kept for one set of frames at a time."""
         frames_of = (tuple(keyframes), tuple(frames))
         if self._rows.get("of") != frames_of:
             self._rows = {"of": frames_of}
-        if (tokens, alpha) not in self._rows:
-            grid = self.grid_of(tokens)
-            if grid not in self._correspondences:
-                self._correspondences[grid] = self.maps.correspondence(*grid)
-            made = self._correspondences[grid].padded_rows(
-                keyframes, frames, alpha, self.first_fill_share, self.average, width)
-            self._rows[tokens, alpha] = [place(array) for array in made]
-        return self._rows[tokens, alpha]
+        if key not in self._rows:
+            self._rows[key] = make(self.correspondence(self.grid_of(key[0])))
+        return self._rows[key]

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The Python module: everything of the library that is not the loop around the network, on NumPy arrays.
+#include "animation_consensus.hpp"
 #include "animation_maps.hpp"
 #include "arrays.hpp"
 
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/blending/padded_rows.hpp>
+#include <genrender/blending/point_counts.hpp>
 #include <genrender/keyframes/draw_keyframes.hpp>
 #include <genrender/maps/background_mask.hpp>
 #include <genrender/noise/initial_noise.hpp>
@@ -209,6 +211,26 @@ auto rows(token_correspondence const& of, std::vector<std::uint32_t> const& keyf
                       array_of<2>(std::move(padded.own), {frames.size(), tokens}));
 }
 
+auto counts(token_correspondence const& of, std::vector<std::uint32_t> const& keyframes,
+            std::optional<std::vector<std::uint32_t>> const& frames) {
+    auto const KF = frames_of(keyframes);
+    auto const joined = frames_of(frames.value_or(keyframes));
+    auto const keys = (KF.size() + (frames ? 1 : 0)) * grid_of(of).size();
+    std::vector<float> all(joined.size() * keys);
+    {
+        nb::gil_scoped_release const others_run;
+        of.with_map([&](auto const& map) {
+            threads()(joined.size(), [&](std::size_t i) {
+                auto const plan = make_blend_plan<float>(map, KF, joined[i], 0.5F);
+                auto const of_frame =
+                    frames ? point_counts(plan.rows(), KF.size()) : point_counts_of_stack(plan.rows(), KF.size());
+                std::copy(of_frame.begin(), of_frame.end(), all.begin() + static_cast<std::ptrdiff_t>(i * keys));
+            });
+        });
+    }
+    return array_of<2>(std::move(all), {joined.size(), keys});
+}
+
 std::vector<std::uint32_t> keyframes(std::size_t count, std::size_t frames, std::size_t step, std::uint64_t seed,
                                      std::string const& drawing) {
     keyframe_settings settings;
@@ -224,8 +246,11 @@ std::vector<std::uint32_t> keyframes(std::size_t count, std::size_t frames, std:
     return numbers;
 }
 
-std::vector<std::size_t> normalize(nb::ndarray<float, nb::ndim<4>, nb::c_contig, nb::device::cpu> const& z,
-                                   input<std::uint8_t, 3> const& background, std::string const& statistics) {
+/// Latents in host memory that are changed in place.
+using latents_in_place = nb::ndarray<float, nb::ndim<4>, nb::c_contig, nb::device::cpu>;
+
+std::vector<std::size_t> normalize(latents_in_place const& z, input<std::uint8_t, 3> const& background,
+                                   std::string const& statistics) {
     adain_settings<float> settings;
     settings.statistics = named("normalize_latents", "statistics", statistics,
                                 {std::pair("mean", adain_statistics::mean),
@@ -233,6 +258,31 @@ std::vector<std::size_t> normalize(nb::ndarray<float, nb::ndim<4>, nb::c_contig,
                                  {"low_band", adain_statistics::low_band},
                                  {"mean_and_deviation", adain_statistics::mean_and_deviation}});
     return normalize_latents(view_of<float, 4>(z), view_of<std::uint8_t const, 3>(background), settings);
+}
+
+std::shared_ptr<animation_consensus> make_consensus(std::shared_ptr<token_correspondence> correspondence,
+                                                    std::size_t steps, std::uint64_t seed, std::size_t sources,
+                                                    float window_begin, float window_end, float strength,
+                                                    float most_gain, bool fades_at_silhouettes,
+                                                    bool agrees_on_background) {
+    render_settings<float> settings;
+    settings.steps = steps;
+    auto& consensus = settings.consensus;
+    consensus.sources.count = sources;
+    consensus.sources.seed = seed;
+    consensus.window_begin = window_begin;
+    consensus.window_end = window_end;
+    consensus.strength = [strength](std::size_t) { return strength; };
+    consensus.most_gain = most_gain;
+    consensus.fades_at_silhouettes = fades_at_silhouettes;
+    consensus.agrees_on_background = agrees_on_background;
+    return std::make_shared<animation_consensus>(std::move(correspondence), std::move(settings));
+}
+
+std::vector<std::size_t> reach(animation_consensus const& consensus, latents_in_place const& x0, std::size_t step) {
+    auto const view = view_of<float, 4>(x0);
+    nb::gil_scoped_release const others_run;
+    return consensus.reach(view, step, threads());
 }
 
 /// Latents of any array library of Python's: samplers move them by their own operators, wherever they are.
@@ -334,7 +384,26 @@ NB_MODULE(_genrender, m) {
              "average"_a = "quality", "width"_a = nb::none(),
              "(index [frames, tokens, W], weights, own [frames, tokens]) of F_out = own F_hat + sum_w weights "
              "F_KF[index], "
-             "where F_KF is [keyframes * tokens, channels]: eq. 6 with alpha folded in.");
+             "where F_KF is [keyframes * tokens, channels]: eq. 6 with alpha folded in.")
+        .def("point_counts", &counts, "keyframes"_a, "frames"_a = nb::none(),
+             "What each key counts for, 1 / the number of keys that show its point [frames, (1 + keyframes) * tokens], "
+             "where frames attend to their own tokens and the keyframes' (eq. 5); without `frames` [keyframes, "
+             "keyframes * tokens], where keyframes attend to each other (eq. 3). Its logarithm is added to logits.");
+
+    nb::class_<animation_consensus>(
+        m, "Consensus",
+        "Clean estimates of all frames agree along the surfaces, and where no object is at their place on the screen.")
+        .def(nb::new_(&make_consensus), "correspondence"_a, "steps"_a, nb::kw_only(), "seed"_a = 0, "sources"_a = 16,
+             "window_begin"_a = 0.0F, "window_end"_a = 0.7F, "strength"_a = 1.0F, "most_gain"_a = 2.0F,
+             "fades_at_silhouettes"_a = true, "agrees_on_background"_a = true,
+             "Of a run of `steps` steps whose latents have the grid of `correspondence`. It is a mean over `sources` "
+             "frames, drawn anew each step, or all frames if these are fewer; along the surfaces in the steps whose "
+             "share of all lies in [window_begin, window_end). A channel's deviation is multiplied by `most_gain` at "
+             "most, to give back what averaging took. Raises ValueError for what no run could honour.")
+        .def("reach", &reach, "x0"_a.noconvert(), "step"_a,
+             "Moves x0 [frames, channels, height, width], float32, in place. Returns the cells of each frame that the "
+             "sources cover, none in a step without a consensus along the surfaces. Raises ValueError for other "
+             "frames, another grid or a step beyond the run, TypeError for what would have to be copied.");
 
     nb::class_<discrete_noise_schedule>(m, "NoiseSchedule", "The noise levels that a network was trained at.")
         .def(nb::new_(&noise_schedule), "alphas_cumprod"_a)

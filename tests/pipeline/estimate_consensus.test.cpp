@@ -281,6 +281,18 @@ TEST_SUITE("pipeline/estimate_consensus") {
         CHECK(world.report.library_seconds == world.report.consensus_seconds);
         CHECK(world.report.coverage.empty());
     }
+    TEST_CASE("without a run estimates reach the same, and cells that sources cover are returned") {
+        strip_of_frames world;
+        world.settings.consensus.sources = {.count = 1, .drawing = keyframe_drawing::fixed, .frames = {{0}}, .seed = 0};
+        auto const expected = world.after(0);
+        auto x0 = world.before;
+        auto const& map = world.maps.at({1, width});
+        CHECK(reach_consensus(&map, world.settings, x0.view(), {}, 0, threaded_loop(2)) ==
+              std::vector<std::size_t>{4, 3, 2, 1, 0, 0, 0, 0, 0});
+        CHECK(std::equal(x0.data(), x0.data() + x0.size(), expected.data()));
+        CHECK(reach_consensus(&map, world.settings, x0.view(), {}, 9, {}).empty());
+        CHECK(std::equal(x0.data(), x0.data() + x0.size(), expected.data()));
+    }
     TEST_CASE("without a map of the latents' grid it is refused") {
         strip_of_frames world;
         world.maps = {};

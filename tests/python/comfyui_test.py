@@ -132,8 +132,9 @@ class PatchesTest(unittest.TestCase):
             return diffusers.StableDiffusionControlNetPipeline.from_pretrained(
                 FOLDER / "epsilon", dtype=torch.float32, safety_checker=None)
 
-        cls.expected = {keyframes: render(pipeline(), cls.maps, PROMPT, height=SIZE, width=SIZE, steps=STEPS, seed=SEED,
-                                          guidance_scale=GUIDANCE, keyframes=keyframes) for keyframes in (2, 4)}
+        cls.expected = {(preset, keyframes): render(
+            pipeline(), cls.maps, PROMPT, height=SIZE, width=SIZE, preset=preset, steps=STEPS, seed=SEED,
+            guidance_scale=GUIDANCE, keyframes=keyframes) for preset, keyframes in (("vivid", 2), ("plain", 2), ("vivid", 4))}
         cls.network = StubNetwork(pipeline(), cls.maps)
 
     def difference(self, a, b):
@@ -142,11 +143,13 @@ class PatchesTest(unittest.TestCase):
     def test_a_patched_model_makes_the_latents_of_the_pipeline(self):
         noise = comfyui.UVNoise(self.maps, SEED)
         plain = self.network.sample(StubModel(), noise)
-        for groups, keyframes, frames_per_call in (([[0, 1]], 4, 2), ([[1], [0]], 2, 5)):
-            model = comfyui.patched(StubModel(), self.maps, keyframes=keyframes, seed=SEED, frames_per_call=frames_per_call)
+        for groups, preset, keyframes, frames_per_call in (([[0, 1]], "vivid", 4, 2), ([[1], [0]], "plain", 2, 5),
+                                                           ([[0, 1]], "vivid", 2, 5)):
+            model = comfyui.patched(StubModel(), self.maps, preset=preset, keyframes=keyframes, seed=SEED,
+                                    frames_per_call=frames_per_call)
             self.network.calls.clear()
             found = self.network.sample(model, noise, groups)
-            share = self.difference(found, self.expected[keyframes])
+            share = self.difference(found, self.expected[preset, keyframes])
             print(f"\ncalls of {groups}: {share:.1e} of the range; without patches {self.difference(plain, found):.1e}")
             self.assertLessEqual(share, 1e-3)
             self.assertGreater(self.difference(plain, found), 1e-2)
@@ -202,7 +205,7 @@ class PatchesTest(unittest.TestCase):
         self.assertEqual((tuple(depth.shape), tuple(latent["samples"].shape)), ((FRAMES, 64, 64, 3), (FRAMES, 4, 8, 8)))
         (noise,) = run("GenrenderNoise", maps=maps, seed=3)
         self.assertEqual(noise.generate_noise(latent).shape, latent["samples"].shape)
-        (model,) = run("GenrenderModel", model=StubModel(), maps=maps, keyframes=2, seed=3, alpha=0.5)
+        (model,) = run("GenrenderModel", model=StubModel(), maps=maps, preset="plain", keyframes=2, seed=3, alpha=0.5)
         self.assertEqual(set(model.model_options["transformer_options"]["patches"]), {"attn1_patch", "attn1_output_patch"})
 
 

@@ -39,19 +39,36 @@ PROMPT, SIZE, FRAMES, SEED, BOUND = "a red and white ball on a green ground", 64
 
 # What is rendered: options of the program, and the same of `render`.
 RUNS = {
+    "vivid": (["--preset", "vivid"], {"preset": "vivid"}),
+    "vivid, Heun's method, 3 sources, half a window": (
+        ["--preset", "vivid", "--sampler", "heun", "--consensus-sources", "3", "--consensus-window", "0", "0.5"],
+        {"preset": "vivid", "sampler": "heun", "consensus": {"sources": 3, "window_end": 0.5}}),
+    "vivid, means normalised": (
+        ["--preset", "vivid", "--normalization", "means"], {"preset": "vivid", "normalization": "mean"}),
     "ours": ([], {}),
-    "frame by frame": (["--method", "per_frame"], {"keyframes": 0, "noise": "independent", "normalization": None}),
+    "frame by frame": (["--method", "per_frame"], {"keyframes": 0, "noise": "independent", "normalization": "none"}),
+    "frame by frame, with a consensus": (
+        ["--method", "per_frame", "--consensus"],
+        {"keyframes": 0, "noise": "independent", "normalization": "none", "consensus": True}),
+    "half of alpha at the latents' grid": (["--latents-grid-alpha", "0.5"], {"latents_grid_alpha": 0.5}),
     "Heun's method, 2 keyframes": (["--sampler", "heun", "--keyframes", "2"], {"sampler": "heun", "keyframes": 2}),
     "DPM++ 2M, 3 frames a call": (["--sampler", "dpmpp_2m"], {"sampler": "dpmpp_2m", "frames_per_call": 3}),
     "without pre-attention": (["--no-pre"], {"pre_attention": False}),
     "without post-attention": (["--no-post"], {"post_attention": False}),
     "alpha .3, plain average": (["--alpha", "0.3", "--average", "plain"], {"alpha": lambda step, name: 0.3, "average": "plain"}),
-    "without normalisation, fixed noise": (["--no-adain", "--noise", "fixed"], {"normalization": None, "noise": "fixed"}),
+    "without normalisation, fixed noise": (["--no-adain", "--noise", "fixed"], {"normalization": "none", "noise": "fixed"}),
     "deviations normalised": (["--adain-deviations"], {"normalization": "mean_and_deviation"}),
     "no guidance": (["--guidance", "1"], {"guidance_scale": 1}),
     "negative prompt, half a ControlNet": (
         ["--negative-prompt", "grey", "--conditioning", "0.5"], {"negative_prompt": "grey", "conditioning_scale": 0.5}),
     "clip skip": (["--clip-skip", "1"], {"clip_skip": 1}),
+    "points counted, temperature": (
+        ["--count-points", "--temperature", "4"], {"counts_points": True, "length_correction": 4}),
+    "points counted, vivid, 2 frames a call": (
+        ["--preset", "vivid", "--count-points"], {"preset": "vivid", "counts_points": True, "frames_per_call": 2}),
+    "total variance kept": (["--variance", "total"], {"variance": "total"}),
+    "variance of sources kept, alpha .4, 3 frames a call": (
+        ["--variance", "sources", "--alpha", "0.4"], {"variance": "sources", "alpha": 0.4, "frames_per_call": 3}),
     "length-corrected temperature to the power of 4": (["--temperature", "4"], {"length_correction": 4}),
 }
 
@@ -67,7 +84,7 @@ def rendered_by_program(folder, name, options):
     begin = time.perf_counter()
     subprocess.run([PROGRAM, "--maps", FOLDER / "maps", "--pipeline", folder, "--prompt", PROMPT, "--size", str(SIZE), "--steps",
                     "4", "--seed", str(SEED), "--out", out, "--latents", "--quiet",
-                    *([] if "--method" in options else ["--preset", "plain"]),
+                    *([] if {"--method", "--preset"} & set(options) else ["--preset", "plain"]),
                     *([] if "--guidance" in options else ["--guidance", "5"]), *options], check=True, stdout=subprocess.DEVNULL)
     return np.load(out / "latents.npy"), time.perf_counter() - begin, out
 
@@ -76,7 +93,7 @@ def rendered_by_diffusers(pipe, **settings):
     """The same of our `render`."""
     begin = time.perf_counter()
     z = render(pipe, genrender.load_exr(str(FOLDER / "maps")), PROMPT, height=SIZE, width=SIZE, steps=4, seed=SEED,
-               **{"guidance_scale": 5, **settings})
+               **{"preset": "plain", "guidance_scale": 5, **settings})
     return z.cpu().numpy(), time.perf_counter() - begin, z
 
 
@@ -192,7 +209,11 @@ class PipelineTest(unittest.TestCase):
                                    ({"keyframes": -1}, "keyframes is -1, expected at least 0"),
                                    ({"frames_per_call": 0}, "frames_per_call is 0, expected at least 1"),
                                    ({"length_correction": -1}, "length_correction is -1, expected a finite number, 0 or more"),
+                                   ({"variance": "half"}, "variance is half, expected one of none, total, sources"),
                                    ({"sampler": "ddim"}, "sampler is ddim"),
+                                   ({"preset": "paper"}, "preset is paper, expected one of vivid, plain"),
+                                   ({"latents_grid_alpha": 2}, "latents_grid_alpha is 2, expected a share in .0, 1."),
+                                   ({"consensus": {"sources": 0}}, "sources.count is 0, expected at least one frame"),
                                    ({"normalization": "median"}, "statistics is median")):
             with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                 render(self.pipe, self.maps, PROMPT, **{"height": SIZE, "width": SIZE, "steps": 1, **settings})

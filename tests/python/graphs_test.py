@@ -69,11 +69,13 @@ class Network:
         return out
 
 
-def written_out(steps, seed, normalization):
+def written_out(steps, seed, normalization, consensus=False, latents_grid_alpha=1):
     """The same by loops over frames, without the package's graphs."""
     of, schedule = maps(), genrender.NoiseSchedule.scaled_linear()
     sigmas = genrender.karras_schedule(steps, schedule.sigma_min, schedule.sigma_max)
     correspondences = {coarse: of.correspondence(*(COARSE if coarse else GRID)) for coarse in (False, True)}
+
+    agreed = genrender.Consensus(correspondences[False], steps, seed=seed)
 
     def D(z, sigma, step):
         c_skip, c_out, c_in = genrender.scalings("epsilon", sigma)
@@ -83,13 +85,16 @@ def written_out(steps, seed, normalization):
                 f = tokens_of(c_in * z, coarse)
                 F = np.tanh(f * t / 500 + branch)
                 for i in range(FRAMES):
-                    index, weights, own = correspondences[coarse].padded_rows(KF, [i], ALPHA)
+                    index, weights, own = correspondences[coarse].padded_rows(
+                        KF, [i], ALPHA if coarse else ALPHA * latents_grid_alpha)
                     rows = F[KF].reshape(-1, CHANNELS)
                     F_bar = (weights[0, ..., None] * rows[index[0]]).sum(1)
                     mixed = own[0, :, None] * F[i] + F_bar + 0.1 * f[KF].mean((0, 1))
                     F_sum[i] += weight * latents_of(mixed[None], coarse)[0]
         x0 = (c_skip * z + c_out * F_sum).astype(np.float32)
-        if normalization is not None:
+        if consensus:
+            agreed.reach(x0, step)
+        if normalization != "none":
             genrender.normalize_latents(x0, of.background(*GRID), normalization)
         return x0
 
@@ -98,14 +103,14 @@ def written_out(steps, seed, normalization):
 
 
 def rendered(network, **settings):
-    return render(maps(), network, **{"channels": CHANNELS, "grid": GRID, "steps": 3, "seed": 4, "keyframes": M,
+    return render(maps(), network, **{"channels": CHANNELS, "grid": GRID, "preset": "plain", "steps": 3, "seed": 4, "keyframes": M,
                                       "frames_per_call": 2, "alpha": ALPHA, "branch_weights": WEIGHTS, **settings})
 
 
 class GraphsTest(unittest.TestCase):
     def test_latents_are_those_of_the_equations_written_out(self):
-        for normalization in ("mean", None):
-            expected, found = written_out(3, 4, normalization), rendered(Network(), normalization=normalization)
+        for settings, told in ((("mean",), {}), (("none", True, 0), {"preset": "vivid"}), (("none",), {"normalization": "none"})):
+            expected, found = written_out(3, 4, *settings), rendered(Network(), **told)
             self.assertEqual(found.shape, (FRAMES, CHANNELS, *GRID))
             self.assertEqual(found.dtype, np.float32)
             self.assertLessEqual(np.abs(found - expected).max(), 1e-5 * (expected.max() - expected.min()))

@@ -78,6 +78,17 @@ class MapsTest(unittest.TestCase):
         self.assertAlmostEqual(own[0, token], 0.4, places=6)
         self.assertEqual((own[0, 0], weights[0, 0].sum()), (1, 0))
 
+    def test_keys_of_one_point_count_together_for_one(self):
+        counts = self.maps.correspondence(TOKENS, TOKENS).point_counts([2, 0], [0])
+        inside = np.zeros((TOKENS, TOKENS), bool)
+        inside[2:6, 1:5] = True
+        in_second = np.roll(inside, 2, 1)
+        expected = np.where([inside, in_second, inside], np.float32(1) / np.float32(3), np.float32(1)).reshape(1, -1)
+        self.assertTrue((counts == expected).all())
+        among = self.maps.correspondence(TOKENS, TOKENS).point_counts([2, 0])
+        expected = np.where([in_second, inside], np.float32(0.5), np.float32(1)).reshape(-1)
+        self.assertTrue((among == [expected, expected]).all())
+
     def test_rows_may_be_as_wide_as_a_graph_needs(self):
         rows = self.maps.correspondence(TOKENS, TOKENS).padded_rows([1], [0], width=5)
         self.assertEqual(rows[0].shape, (1, TOKENS ** 2, 5))
@@ -88,6 +99,35 @@ class MapsTest(unittest.TestCase):
         index, weights, own = nothing.correspondence(TOKENS, TOKENS).padded_rows([1], [0, 2])
         self.assertEqual((index.shape, weights.shape), ((2, TOKENS ** 2, 0), (2, TOKENS ** 2, 0)))
         self.assertTrue((own == 1).all())
+
+    def test_a_consensus_is_the_mean_along_the_surface_and_of_the_background_at_its_place(self):
+        x0 = np.random.default_rng(2).standard_normal((FRAMES, 2, TOKENS, TOKENS)).astype(np.float32)
+        before, square = x0.copy(), [(slice(None), slice(2, 6), slice(1 + i, 5 + i)) for i in range(FRAMES)]
+        consensus = genrender.Consensus(self.maps.correspondence(TOKENS, TOKENS), 10, most_gain=1)
+        self.assertEqual(consensus.reach(x0, 7), [])  # beyond the window
+        np.testing.assert_allclose(x0, before, atol=1e-5)
+        self.assertEqual(consensus.reach(x0, 6), [16] * FRAMES)
+        for i in range(FRAMES):
+            np.testing.assert_allclose(x0[i][square[i]], np.mean([before[k][square[k]] for k in range(FRAMES)], 0), atol=1e-5)
+            x0[i][square[i]] = before[i][square[i]]
+        np.testing.assert_allclose(x0, before, atol=1e-5)  # no two frames show open background at one place
+        nothing = genrender.Maps(self.maps.uv, self.maps.object, np.zeros_like(self.maps.coverage))
+        of_background = genrender.Consensus(nothing.correspondence(TOKENS, TOKENS), 10, seed=5)
+        self.assertEqual(of_background.reach(x0, 9), [])
+        np.testing.assert_allclose(x0, np.broadcast_to(before.mean(0), x0.shape), atol=1e-5)
+
+    def test_a_consensus_draws_its_sources_by_the_seed_and_moves_by_its_strength(self):
+        before = np.random.default_rng(3).standard_normal((FRAMES, 2, TOKENS, TOKENS)).astype(np.float32)
+
+        def reached(**settings):
+            x0 = before.copy()
+            genrender.Consensus(self.maps.correspondence(TOKENS, TOKENS), 4, sources=1, **settings).reach(x0, 0)
+            return x0
+
+        draws = [reached(seed=seed) for seed in range(6)]
+        self.assertTrue((draws[1] == reached(seed=1)).all())
+        self.assertTrue(any((draws[0] != other).any() for other in draws))
+        np.testing.assert_allclose(reached(strength=0.25), 0.75 * before + 0.25 * draws[0], atol=1e-5)
 
     def test_rest_positions_name_points_as_uv_do(self):
         uv, coverage = self.maps.uv, self.maps.coverage
@@ -111,6 +151,12 @@ class MapsTest(unittest.TestCase):
                 (lambda: self.maps.correspondence(8, 8).padded_rows([0], [0], math.nan), "alpha is nan"),
                 (lambda: self.maps.correspondence(8, 8).padded_rows([0, 1], [0], width=1), "entries, expected at most the width 1"),
                 (lambda: genrender.draw_keyframes(4, 3, 0), "count is 4, expected 1 to the animation's 3 frames"),
+                (lambda: genrender.Consensus(self.maps.correspondence(8, 8), 0), "steps is 0, expected at least one step"),
+                (lambda: genrender.Consensus(self.maps.correspondence(8, 8), 3, window_end=2), "window_end is 2"),
+                (lambda: genrender.Consensus(self.maps.correspondence(8, 8), 3).reach(np.zeros((2, 4, 8, 8), np.float32), 0),
+                 "Consensus.reach: x0 is .2, 4, 8, 8., expected .3, 4, 8, 8."),
+                (lambda: genrender.Consensus(self.maps.correspondence(8, 8), 3).reach(np.zeros((3, 4, 8, 8), np.float32), 3),
+                 "step is 3, expected a step of the run"),
                 (lambda: genrender.sample("ddim", lambda z, sigma, step: z, 1.0, [1, 0]), "sampler is ddim"),
                 (lambda: genrender.scalings("noise", 1.0), "prediction is noise")):
             with self.assertRaisesRegex(ValueError, expected):

@@ -22,5 +22,5 @@ pipe = SimpleNamespace(
 for network in (pipe.unet, pipe.controlnet):
     network.forward = case.timed(network.forward)
 names = ("height", "width", "steps", "seed", "keyframes", "frames_per_call", "guidance_scale")
-case.finish(lambda: render(pipe, case.maps, "", hint=torch.from_numpy(case.hint),
+case.finish(lambda: render(pipe, case.maps, "", hint=torch.from_numpy(case.hint), preset="plain",
                            **{name: settings[name] for name in names}).numpy())

@@ -26,5 +26,6 @@ for name, frames in (("keyframe", m), ("injected", settings["frames_per_call"]),
     sessions[name, frames] = onnxruntime.InferenceSession(file, options, providers=["CPUExecutionProvider"])
 scale = settings["guidance_scale"]
 case.finish(lambda: render(
-    case.maps, case.timed(graph), branch_weights=(1 - scale, scale), schedule=NoiseSchedule.scaled_linear(*settings["betas"]),
+    case.maps, case.timed(graph), preset="plain", branch_weights=(1 - scale, scale),
+    schedule=NoiseSchedule.scaled_linear(*settings["betas"]),
     **{name: settings[name] for name in ("channels", "grid", "steps", "seed", "keyframes", "frames_per_call", "prediction")}))

@@ -7,6 +7,7 @@
 #include <genrender/blending/blend_plan.hpp>
 #include <genrender/blending/consensus.hpp>
 #include <genrender/core/error.hpp>
+#include <genrender/core/parallel.hpp>
 #include <genrender/core/random.hpp>
 #include <genrender/core/stack.hpp>
 #include <genrender/core/strided_view.hpp>
@@ -20,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -103,42 +105,41 @@ struct latent_cells {
 };
 
 /// Moves the clean estimates x0 [frames, channels, height, width] of a step towards their consensus, where the settings
-/// have one: along the surfaces by plans of the map of the latents' grid, and where no object is to the mean at the place
-/// on the screen (background_plan). Without shares, or if the settings do not fade, covered cells move alike; without
-/// background it stays as it is. Each frame reads copies of the sources, so frames run side by side and the result is the
-/// same with every loop. Throws value_error if the run has no map of the latents' grid.
-template <denoiser Phi, correspondence_map Map>
-void reach_consensus(sequence_run<Phi, Map> const& run, strided_view<typename Phi::real_type, 4> x0,
-                     latent_cells const& cells, std::size_t step) {
-    using Real = typename Phi::real_type;
-    using clock = std::chrono::steady_clock;
-    auto const& settings = run.settings->consensus;
+/// have one: along the surfaces by plans of `map`, and where no object is to the mean at the place on the screen
+/// (background_plan). `map` is that of the latents' grid and is read in steps with a consensus along the surfaces alone.
+/// Without shares, or if the settings do not fade, covered cells move alike; without background it stays as it is. Each
+/// frame reads copies of the sources, so frames run side by side and the result is the same with every loop. Returns how
+/// many cells of each frame the sources cover, none without a consensus along the surfaces.
+template <correspondence_map Map, class Real>
+std::vector<std::size_t> reach_consensus(Map const* map, render_settings<Real> const& run,
+                                         strided_view<std::type_identity_t<Real>, 4> x0, latent_cells const& cells,
+                                         std::size_t step, any_loop const& loop) {
+    auto const& settings = run.consensus;
     auto const frames = x0.extent(0);
-    auto const on_surfaces = has_surface_consensus(*run.settings, step);
-    auto const on_background = has_background_consensus(*run.settings) && cells.background.size() > 0;
+    auto const on_surfaces = has_surface_consensus(run, step);
+    auto const on_background = has_background_consensus(run) && cells.background.size() > 0;
+    std::vector<std::size_t> covered(on_surfaces ? frames : 0, 0);
     if (!on_surfaces && !on_background) {
-        return;
+        return covered;
     }
-    auto const start = clock::now();
-    auto const sources = consensus_sources(*run.settings, frames, step);
+    auto const sources = consensus_sources(run, frames, step);
     std::span<frame_index const> const from(sources);
     grid_extents const grid{x0.extent(2), x0.extent(3)};
-    Map const* const map = on_surfaces ? &run.maps->at(grid) : nullptr;
     auto held = stack<Real, 3>::uninitialized({sources.size(), grid.size(), x0.extent(1)});
-    run.loop(sources.size(),
-             [&](std::size_t k) { gather_estimates(held.view()[k], in_view<Real, 3>(x0[sources[k].value])); });
+    loop(sources.size(),
+         [&](std::size_t k) { gather_estimates(held.view()[k], in_view<Real, 3>(x0[sources[k].value])); });
     std::uint8_t const whole = 255;
     strided_view<std::uint8_t const, 2> const all_whole(&whole, {grid.height, grid.width}, {0, 0});
     auto const fades = settings.fades_at_silhouettes && cells.shares.size() > 0;
-    auto const weights = settings.quality.at(step, run.settings->steps);
-    run.loop(frames, [&](std::size_t n) {
+    auto const weights = settings.quality.at(step, run.steps);
+    loop(frames, [&](std::size_t n) {
         frame_index const i{static_cast<std::uint32_t>(n)};
         if (on_surfaces) {
             auto const plan =
                 make_blend_plan<Real>(*map, from, i, settings.first_fill_share, settings.average, weights);
             mix_consensus(x0[n], std::as_const(held).view(), plan.rows(), settings.strength(step), settings.most_gain,
                           fades ? cells.shares[n] : all_whole);
-            run.report->add_consensus_coverage(run.maps->tokens_on_objects(grid, i), plan.covered_count());
+            covered[n] = plan.covered_count();
         }
         if (on_background) {
             // A gain would be another for each frame, as each sees another part.
@@ -146,6 +147,22 @@ void reach_consensus(sequence_run<Phi, Map> const& run, strided_view<typename Ph
             mix_consensus(x0[n], std::as_const(held).view(), plan.rows(), Real(1), Real(1), all_whole);
         }
     });
+    return covered;
+}
+
+/// The same of a run, whose report is told coverage and seconds. Throws value_error if the run has no map of the latents'
+/// grid and needs one.
+template <denoiser Phi, correspondence_map Map>
+void reach_consensus(sequence_run<Phi, Map> const& run, strided_view<typename Phi::real_type, 4> x0,
+                     latent_cells const& cells, std::size_t step) {
+    using clock = std::chrono::steady_clock;
+    auto const start = clock::now();
+    grid_extents const grid{x0.extent(2), x0.extent(3)};
+    Map const* const map = has_surface_consensus(*run.settings, step) ? &run.maps->at(grid) : nullptr;
+    auto const covered = reach_consensus(map, *run.settings, x0, cells, step, run.loop);
+    for (std::uint32_t i = 0; i < covered.size(); ++i) {
+        run.report->add_consensus_coverage(run.maps->tokens_on_objects(grid, {i}), covered[i]);
+    }
     run.report->add_consensus_seconds(std::chrono::duration<double>(clock::now() - start).count());
 }
 
