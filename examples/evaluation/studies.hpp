@@ -93,7 +93,6 @@ inline std::vector<study> development_studies() {
         {"development"},
         {"Per-Frame, UV noise", "TokenFlow*, fixed noise", "TokenFlow*, UV noise", "paper", "plain", "vivid"},
         scene_set::development};
-    variants.captions = 2;
     return {variants};
 }
 
