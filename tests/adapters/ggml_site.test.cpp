@@ -48,7 +48,7 @@ TEST_SUITE("adapters/ggml_site") {
             auto* const joined =
                 site.join(ctx, own, of_keyframes == nullptr ? nullptr : ggml_mul_mat(ctx, V, of_keyframes));
             auto* const v = ggml_cont(ctx, ggml_transpose(ctx, by_head(ctx, joined)));
-            auto* const q = by_head(ctx, ggml_mul_mat(ctx, Q, queries));
+            auto* const q = by_head(ctx, site.scaled(ctx, ggml_mul_mat(ctx, Q, queries)));
             auto* products = ggml_scale(ctx, ggml_mul_mat(ctx, k, q), 1 / std::sqrt(static_cast<float>(q->ne[0])));
             if (site.mask() != nullptr) {
                 products = ggml_add(ctx, products, site.mask());
@@ -82,5 +82,11 @@ TEST_SUITE("adapters/ggml_site") {
 
     TEST_CASE("features of ggml in 16 bits differ from the library's by their rounding alone") {
         check_half_precision<ggml_module>();
+    }
+
+    TEST_CASE("queries are left as they are where nothing is scaled: a ggml graph has no node for it") {
+        adapters::ggml_site const site(graph_pass::injected, {}, nullptr, nullptr, nullptr);
+        ggml_tensor Q{};
+        CHECK(site.scaled(nullptr, &Q) == &Q);
     }
 }

@@ -30,9 +30,10 @@ TEST_SUITE("adapters/graph_denoiser") {
         using tensor_type = std::string;
         using feature_io_type = numbered_feature_io;
         static std::unique_ptr<numbered_feature_io> make_feature_io(diary* happened, run_shapes const& shapes,
-                                                                    std::span<attention_site const> sites) {
+                                                                    std::span<attention_site const> sites,
+                                                                    bool scales_logits) {
             happened->push_back("tensors");
-            return std::make_unique<numbered_feature_io>(numbered_memory{}, shapes, sites);
+            return std::make_unique<numbered_feature_io>(numbered_memory{}, shapes, sites, scales_logits);
         }
 
         diary* happened;
@@ -114,6 +115,19 @@ TEST_SUITE("adapters/graph_denoiser") {
         phi.prepare(shapes_without_places());
         call();
         CHECK(std::count(happened.begin(), happened.end(), "finish of pass 0 over z 1 1 2 2") == 2);
+    }
+
+    TEST_CASE("a run that scales logits is refused unless the network says that it does") {
+        diary happened;
+        auto network = small_network();
+        auto shapes = shapes_without_places();
+        shapes.scales_logits = true;
+        CHECK_THROWS_WITH_AS(denoiser_of(happened, network).prepare(shapes),
+                             "graph_feature_io: shapes.scales_logits is true, expected a length_correction of 0 for "
+                             "graphs that do not scale logits",
+                             value_error);
+        network.scales_logits = true;
+        CHECK_NOTHROW(denoiser_of(happened, network).prepare(shapes));
     }
 
     TEST_CASE("tokens lie one after the other with their channels innermost") {

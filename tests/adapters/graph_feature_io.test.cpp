@@ -102,6 +102,43 @@ TEST_SUITE("adapters/graph_feature_io") {
         CHECK(io.plan({1}, 2).alphas.empty());
     }
 
+    TEST_CASE("scales are written in the passes that join keys, ones where a place has none") {
+        auto shapes = shapes_of_two_branches();
+        shapes.scales_logits = true;
+        numbered_feature_io io({}, shapes, numbered_sites, true);
+        auto const by_count = [](site_index, std::size_t joined) { return static_cast<double>(joined); };
+        feature_bank<numbered_features> bank(2, 2);
+        auto const always = [](attention_place) { return true; };
+        recorder<numbered_features> const records(bank, always, true, feature_storage::same, by_count);
+        REQUIRE(io.pass_of(records, numbered_keyframes) == graph_pass::keyframe);
+        for (std::uint32_t branch = 0; branch < 2; ++branch) {
+            io.write(records, graph_pass::keyframe, branch, numbered_keyframes);
+            io.record(records, branch, numbered_keyframes);
+        }
+        REQUIRE(io.scales({{1}, 0}, graph_pass::keyframe, 2) != nullptr);
+        CHECK(io.scales({{1}, 0}, graph_pass::keyframe, 2)->values == std::vector<double>{2, 2});
+        CHECK(io.scales({{1}, 1}, graph_pass::keyframe, 2) == io.scales({{1}, 0}, graph_pass::keyframe, 2));
+        CHECK(io.scales({{1}, 0}, graph_pass::plain, 2) == nullptr);
+        CHECK(io.scales({{0}, 0}, graph_pass::keyframe, 2) == nullptr);
+
+        auto const plans = empty_plans();
+        injection_settings settings;
+        settings.keeps_own_copy = false;
+        auto const alpha = [](site_index) { return 0.25f; };
+        numbered_injector const injects(bank, numbered_keyframes, plans, settings, alpha, by_count);
+        io.write(injects, graph_pass::injected, 0, numbered_frames);
+        CHECK(io.scales({{1}, 0}, graph_pass::injected, 3)->values == std::vector<double>{3, 2, 3});
+        numbered_injector const unscaled(bank, numbered_keyframes, plans);
+        io.write(unscaled, graph_pass::injected, 0, numbered_frames);
+        CHECK(io.scales({{1}, 0}, graph_pass::injected, 3)->values == std::vector<double>{1, 1, 1});
+
+        // A run whose shapes do not say so has no scales, and refuses them.
+        numbered_feature_io other({}, shapes_of_two_branches(), numbered_sites, true);
+        CHECK(other.scales({{1}, 0}, graph_pass::injected, 3) == nullptr);
+        CHECK_THROWS_WITH_AS(other.write(injects, graph_pass::injected, 0, numbered_frames),
+                             doctest::Contains("logits are scaled"), value_error);
+    }
+
     TEST_CASE("features of another memory and inputs of another pass are refused") {
         numbered_feature_io io({}, shapes_of_two_branches(), numbered_sites);
         feature_bank<numbered_features> bank(2, 2);

@@ -35,17 +35,25 @@ struct noted_plan {
     void write_mask(std::span<std::optional<std::size_t> const> of) { left_out.assign(of.begin(), of.end()); }
 };
 
+struct noted_scales {
+    std::size_t frames;
+    std::vector<double> values{};
+    void write(std::span<double const> of) { values.assign(of.begin(), of.end()); }
+};
+
 /// Counts what it makes.
 struct numbered_memory {
     using features_type = numbered_features;
     using bank_type = numbered_bank;
     using plan_type = noted_plan;
+    using scales_type = noted_scales;
     int made = 0;
     numbered_bank bank(attention_site const&, run_shapes const&) {
         made += 2;
         return {made - 1, made};
     }
     noted_plan plan(std::size_t frames, std::size_t tokens, run_shapes const&) const { return {frames, tokens}; }
+    noted_scales scales(std::size_t frames) const { return {frames}; }
 };
 
 using numbered_feature_io = adapters::graph_feature_io<numbered_memory>;

@@ -32,6 +32,7 @@ struct module_case {
     bool post_attention = true;
     bool keeps_own_copy = false;
     feature_storage storage = feature_storage::same;
+    double length_correction = 0;
 };
 
 /// The greatest differences of an engine's output and the library's.
@@ -66,6 +67,7 @@ module_differences compare_module(module_case const& with) {
     shapes.leaves_out = !with.keeps_own_copy;
     shapes.lists_sources = false;
     shapes.storage = with.storage;
+    shapes.scales_logits = with.length_correction > 0;
     Engine engine(shapes, sites, module);
 
     std::vector<random_plan<float>> const plans{{tokens, KF.size(), 4}, {tokens, KF.size(), 5}, {tokens, KF.size(), 6}};
@@ -77,6 +79,7 @@ module_differences compare_module(module_case const& with) {
     settings.keeps_own_copy = with.keeps_own_copy;
     auto const alpha = [](site_index) { return 0.6f; };
     auto const always = [](attention_place) { return true; };
+    auto const scale = length_scale(sites, with.length_correction);
 
     auto const difference = [&](auto const& engines, auto const& library, std::span<frame_index const> stack,
                                 std::uint64_t seed) {
@@ -98,12 +101,13 @@ module_differences compare_module(module_case const& with) {
     for (auto const step : {0u, 1u}) {
         feature_bank<typename Engine::features_type> engine_bank(2, 2);
         feature_bank<host_features<float>> library_bank(2, 2);
-        recorder<typename Engine::features_type> const records(engine_bank, always, true, with.storage);
-        recorder<host_features<float>> const recorded(library_bank, always, true, with.storage);
+        recorder<typename Engine::features_type> const records(engine_bank, always, true, with.storage, scale);
+        recorder<host_features<float>> const recorded(library_bank, always, true, with.storage, scale);
         auto const keyframe = difference(records, recorded, KF, 20 + step);
         result.keyframe = std::max(result.keyframe, keyframe);
-        injector<typename Engine::features_type, float> const injects(engine_bank, KF, by_frame, settings, alpha);
-        injector<host_features<float>, float> const injected(library_bank, KF, by_frame, settings, alpha);
+        injector<typename Engine::features_type, float> const injects(engine_bank, KF, by_frame, settings, alpha,
+                                                                      scale);
+        injector<host_features<float>, float> const injected(library_bank, KF, by_frame, settings, alpha, scale);
         (step == 0 ? result.injected : result.second_step) = difference(injects, injected, frames, 30 + step);
     }
     return result;
@@ -117,7 +121,7 @@ struct graph_module {
     using features_type = typename graph_type::feature_io_type::features_type;
 
     graph_module(run_shapes const& shapes, std::span<attention_site const> sites, matrix_module<float> const& matrices)
-        : module(matrices), io(graph_type::make_feature_io(module.device(), shapes, sites)) {}
+        : module(matrices), io(graph_type::make_feature_io(module.device(), shapes, sites, true)) {}
 
     template <class Processor>
     stack<float, 3> operator()(Processor const& processor, attention_place place, std::span<frame_index const> frames,
@@ -142,18 +146,21 @@ struct graph_module {
     std::map<adapters::graph_key, std::unique_ptr<graph_type>> graphs;
 };
 
-/// [GR eq. 3, 5, 6] A module equals the library's call in every pass, with each equation and without, with a mask and
+/// [GR eq. 3, 5, 6] A module equals the library's call in every pass, with each equation, a mask and a temperature, and
 /// without.
 template <class Module>
 void check_every_pass() {
     for (auto const pre : {true, false}) {
         for (auto const post : {true, false}) {
             for (auto const keeps : {true, false}) {
-                auto const apart = compare_module<graph_module<Module>>({pre, post, keeps});
-                CHECK(apart.plain <= 1e-6);
-                CHECK(apart.keyframe <= 1e-6);
-                CHECK(apart.injected <= 1e-6);
-                CHECK(apart.second_step <= 1e-6);
+                for (auto const power : {0.0, 1.0}) {
+                    auto const apart =
+                        compare_module<graph_module<Module>>({pre, post, keeps, feature_storage::same, power});
+                    CHECK(apart.plain <= 1e-6);
+                    CHECK(apart.keyframe <= 1e-6);
+                    CHECK(apart.injected <= 1e-6);
+                    CHECK(apart.second_step <= 1e-6);
+                }
             }
         }
     }
@@ -177,8 +184,14 @@ void check_refused_runs(typename Graph::device_type const& device) {
     CHECK_THROWS_WITH_AS(Graph::make_feature_io(device, shapes, {}), doctest::Contains("shapes.lists_sources"),
                          value_error);
     shapes.lists_sources = false;
+    shapes.scales_logits = true;
+    CHECK_THROWS_WITH_AS(Graph::make_feature_io(device, shapes, {}),
+                         "graph_feature_io: shapes.scales_logits is true, expected a length_correction of 0 for graphs "
+                         "that do not scale logits",
+                         value_error);
+    CHECK_NOTHROW(Graph::make_feature_io(device, shapes, {}, true));
     shapes.banks = 2;
-    CHECK_THROWS_WITH_AS(Graph::make_feature_io(device, shapes, {}), doctest::Contains("one bank"), value_error);
+    CHECK_THROWS_WITH_AS(Graph::make_feature_io(device, shapes, {}, true), doctest::Contains("one bank"), value_error);
 }
 
 /// Inputs go by name and must fit, also those that nothing reads; `twice(graph, x)` is 2 x.

@@ -37,7 +37,7 @@ TEST_SUITE("adapters/openvino_site") {
             auto const own = projected(module.W_V, queries);
             auto const values =
                 of_keyframes ? site.join(own, projected(module.W_V, *of_keyframes)) : site.join(own, std::nullopt);
-            ov::OutputVector inputs{by_head(projected(module.W_Q, queries)),
+            ov::OutputVector inputs{by_head(site.scaled(projected(module.W_Q, queries))),
                                     by_head(projected(module.W_K, site.sources(f))), by_head(values)};
             if (site.mask()) {
                 inputs.push_back(*site.mask());
@@ -78,6 +78,14 @@ TEST_SUITE("adapters/openvino_site") {
 
     TEST_CASE("features of OpenVINO in 16 bits differ from the library's by their rounding alone") {
         check_half_precision<openvino_module>();
+    }
+
+    TEST_CASE("queries are left as they are where nothing is scaled: a model of OpenVINO has no node for it") {
+        adapters::openvino_ports ports;
+        adapters::openvino_site const site(graph_pass::injected, {}, nullptr, nullptr, nullptr, ports, "site");
+        auto const Q = ports.add_input("Q", ov::Tensor(ov::element::f32, {1, 2, 3}));
+        CHECK(site.scaled(Q) == Q);
+        CHECK(ports.parameters().size() == 1);
     }
 
     TEST_CASE("extra inputs and outputs of a model are listed in the order in which they were added") {

@@ -72,6 +72,10 @@ TEST_SUITE("injection/graph_pass") {
         shapes.keyframes = 3;
         CHECK_THROWS_WITH_AS(check_inputs(records, graph_pass::keyframe, shapes),
                              doctest::Contains("as many keyframes in every step"), value_error);
+        feature_inputs<graph_handle, float> in;
+        in.scales = {2};
+        CHECK_THROWS_WITH_AS(require_inputs(in, graph_pass::plain, shapes, graph_frames),
+                             "require_inputs: in.scales.size() is 1, expected one for each frame", value_error);
     }
 
     TEST_CASE("[GR eq. 5] the keyframe that a frame leaves out has minus infinity, all else 0") {

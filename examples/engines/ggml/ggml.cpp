@@ -23,7 +23,8 @@ int main() {
                                               .sites = {net.sites.begin(), net.sites.end()},
                                               .predicted = prediction::velocity,
                                               .branch_weights = {0.5f, 0.5f},
-                                              .layout = adapters::latent_layout::tokens};
+                                              .layout = adapters::latent_layout::tokens,
+                                              .scales_logits = true};
         auto const build = [&](adapters::ggml_graph& graph, ggml_tensor* z) {
             ggml_operations operations{graph, weights};
             return net(operations, z, graph.add_input("shift", {net.channels}));

@@ -70,7 +70,7 @@ struct ggml_operations {
     ggml_tensor* attention(site_index index, small_unet::block const& block, ggml_tensor* f) const {
         auto const module = graph.site(index);
         auto* const sources = module.sources(ctx, f);
-        auto* const Q = by_head(linear(block.query, module.queries(ctx, f)));
+        auto* const Q = by_head(module.scaled(ctx, linear(block.query, module.queries(ctx, f))));
         auto* const K = by_head(linear(block.key, sources));
         auto* const V = ggml_cont(ctx, ggml_transpose(ctx, by_head(linear(block.value, sources))));
         auto* products = ggml_scale(ctx, ggml_mul_mat(ctx, K, Q), 1 / std::sqrt(static_cast<float>(Q->ne[0])));

@@ -53,8 +53,8 @@ struct openvino_operations {
     value attention(site_index index, small_unet::block const& block, value const& f) const {
         auto const module = graph.site(index);
         auto const sources = module.sources(f);
-        ov::OutputVector in{by_head(linear(block.query, module.queries(f))), by_head(linear(block.key, sources)),
-                            by_head(linear(block.value, sources))};
+        ov::OutputVector in{by_head(module.scaled(linear(block.query, module.queries(f)))),
+                            by_head(linear(block.key, sources)), by_head(linear(block.value, sources))};
         if (module.mask()) {
             in.push_back(*module.mask());
         }

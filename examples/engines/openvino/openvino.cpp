@@ -21,7 +21,8 @@ int main() {
                                               .sites = {net.sites.begin(), net.sites.end()},
                                               .predicted = prediction::velocity,
                                               .branch_weights = {0.5f, 0.5f},
-                                              .layout = adapters::latent_layout::tokens};
+                                              .layout = adapters::latent_layout::tokens,
+                                              .scales_logits = true};
         auto const build = [&](adapters::openvino_graph& graph, adapters::openvino_value const& z) {
             openvino_operations operations{graph};
             return net(operations, z, graph.add_input("shift", {1, 1, net.channels}));

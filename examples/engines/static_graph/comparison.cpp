@@ -185,6 +185,17 @@ int compare_graphs(std::string const& engine, std::function<graph_frames(graph_c
                          apart, effect);
             return 1;
         }
+        given.settings.injection.length_correction = 1;
+        auto const scaled = rendered(given.settings);
+        auto const scaled_apart = difference(run(given).z, scaled);
+        auto const scaled_effect = difference(reference, scaled);
+        if (!(scaled_apart <= 1e-5 && scaled_effect >= 1e-3)) {
+            std::fprintf(stderr,
+                         "with a length_correction of 1 latents differ by %g of their range, expected at most 1e-5; it "
+                         "moves them by %g\n",
+                         scaled_apart, scaled_effect);
+            return 1;
+        }
         return 0;
     } catch (std::exception const& error) {
         std::fprintf(stderr, "%s\n", error.what());

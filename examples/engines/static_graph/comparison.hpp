@@ -30,8 +30,9 @@ struct graph_frames {
 ///
 ///     engine | feature I/O | - | - | greatest difference | run s against the reference network | library outside the denoiser
 ///
-/// The difference is a share of the range of the latents. Returns 0; 1 if it is above 1e-5, if an engine without injection
-/// would pass too, or with a sentence if something throws.
+/// The difference is a share of the range of the latents. Renders both once more with a length_correction of 1. Returns 0; 1
+/// if a difference is above 1e-5, if an engine without injection or scales would pass too, or with a sentence if something
+/// throws.
 int compare_graphs(std::string const& engine, std::function<graph_frames(graph_case const&)> const& run);
 
 } // namespace genrender::examples

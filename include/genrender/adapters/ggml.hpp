@@ -45,8 +45,9 @@ public:
 
     /// The fixed tensors of a run. Throws as ggml_feature_io does.
     static std::unique_ptr<ggml_feature_io> make_feature_io(ggml_device device, run_shapes const& shapes,
-                                                            std::span<attention_site const> sites) {
-        return std::make_unique<ggml_feature_io>(device.backend, shapes, sites);
+                                                            std::span<attention_site const> sites,
+                                                            bool scales_logits = false) {
+        return std::make_unique<ggml_feature_io>(device.backend, shapes, sites, scales_logits);
     }
 
     /// One without nodes. `io` outlives it. Throws std::bad_alloc if there is no memory for its description.

@@ -201,11 +201,32 @@ private:
     std::size_t uploads_ = 0;
 };
 
+/// What the logits of each frame of a stack are multiplied by.
+class ggml_scales {
+public:
+    /// Allocates for so many frames.
+    ggml_scales(ggml_backend_t backend, std::size_t frames) : tensor(memory_.add(GGML_TYPE_F32, {1, 1, frames, 1})) {
+        memory_.allocate(backend);
+    }
+    /// Uploads them, one a frame.
+    void write(std::span<double const> scales) {
+        std::vector<float> const values(scales.begin(), scales.end());
+        ggml_backend_tensor_set(tensor, values.data(), 0, ggml_nbytes(tensor));
+    }
+
+private:
+    ggml_fixed_tensors memory_{1};
+
+public:
+    ggml_tensor* tensor; ///< F32 {1, 1, frames}
+};
+
 /// Makes the tensors of a graph_feature_io on a backend, which is the caller's and outlives them.
 struct ggml_memory {
     using features_type = ggml_features; ///< a handle
     using bank_type = ggml_bank;         ///< f_KF and F_KF
     using plan_type = ggml_plan;         ///< rows and masks
+    using scales_type = ggml_scales;     ///< of logits
     ggml_backend_t backend;              ///< whose memory it is
 
     /// Features of the keyframes of a site. Throws std::bad_alloc if the backend has no memory.
@@ -216,6 +237,8 @@ struct ggml_memory {
     ggml_plan plan(std::size_t frames, std::size_t tokens, run_shapes const& shapes) const {
         return {backend, frames, tokens, shapes};
     }
+    /// Scales of a stack of frames. Throws std::bad_alloc if the backend has no memory.
+    ggml_scales scales(std::size_t frames) const { return {backend, frames}; }
 };
 
 } // namespace genrender::adapters

@@ -24,17 +24,32 @@ namespace genrender::adapters {
 /// member gives back what it is given.
 class ggml_site {
 public:
-    /// Of a pass for so many frames. `bank` and `plan` outlive the graph, null where the module is left plain.
-    ggml_site(graph_pass pass, run_shapes const& shapes, ggml_bank const* bank, ggml_plan const* plan)
+    /// Of a pass. What pointers name outlives the graph: `bank` and `plan` are null where the module is left plain,
+    /// `scales` where its logits are not scaled.
+    ggml_site(graph_pass pass, run_shapes const& shapes, ggml_bank const* bank, ggml_plan const* plan,
+              ggml_scales const* scales)
         : is_keyframe_(pass == graph_pass::keyframe && bank != nullptr),
           joins_(pass == graph_pass::injected && bank != nullptr && shapes.joins_keyframes),
           mixes_(pass == graph_pass::injected && bank != nullptr && shapes.mixes_rows),
-          attends_to_stack_(is_keyframe_ && shapes.attends_to_stack), bank_(bank), plan_(plan) {}
+          attends_to_stack_(is_keyframe_ && shapes.attends_to_stack), bank_(bank), plan_(plan), scales_(scales) {}
 
     /// The tokens that the module's queries are of: of f, or of its frames in a row (eq. 3: one long row of tokens that
     /// all attend to each other is the same). The module's residual and all behind it take f itself.
     ggml_tensor* queries(ggml_context* ctx, ggml_tensor* f) const {
         return attends_to_stack_ ? ggml_reshape_3d(ctx, contiguous(ctx, f), f->ne[0], f->ne[1] * f->ne[2], 1) : f;
+    }
+
+    /// What the module projected of `queries`, ne = {channels, .., ..}, times what the logits of each frame are multiplied by
+    /// (the length-corrected temperature); Q itself where nothing is scaled. A network of which all modules take it says so
+    /// (graph_network::scales_logits).
+    ggml_tensor* scaled(ggml_context* ctx, ggml_tensor* Q) const {
+        if (scales_ == nullptr) {
+            return Q;
+        }
+        auto* const scale = scales_->tensor;
+        auto const tokens = Q->ne[1] * Q->ne[2] / scale->ne[2];
+        auto* const by_frame = ggml_reshape_3d(ctx, contiguous(ctx, Q), Q->ne[0], tokens, scale->ne[2]);
+        return ggml_reshape_3d(ctx, ggml_mul(ctx, by_frame, scale), Q->ne[0], Q->ne[1], Q->ne[2]);
     }
 
     /// The tokens that keys and values are of: those of `queries`, or each frame's own and then the keyframes' (eq. 5),
@@ -110,6 +125,7 @@ private:
     bool attends_to_stack_;
     ggml_bank const* bank_;
     ggml_plan const* plan_;
+    ggml_scales const* scales_;
 };
 
 /// Feature I/O of ggml graphs: tensors in memory of its own on the backend, which no allocator of graphs reuses. Make one in
@@ -118,14 +134,16 @@ class ggml_feature_io : public graph_feature_io<ggml_memory> {
 public:
     /// For the shapes of a run and the denoiser's sites. The backend is the caller's and outlives it. Throws as
     /// graph_feature_io does; std::bad_alloc if the backend has no memory.
-    ggml_feature_io(ggml_backend_t backend, run_shapes shapes, std::span<attention_site const> sites)
-        : graph_feature_io({backend}, std::move(shapes), sites) {}
+    ggml_feature_io(ggml_backend_t backend, run_shapes shapes, std::span<attention_site const> sites,
+                    bool scales_logits = false)
+        : graph_feature_io({backend}, std::move(shapes), sites, scales_logits) {}
 
     /// The module at a place, for building a graph of a pass with so many frames.
     ggml_site site(attention_place place, graph_pass pass, std::size_t frames) {
         auto const* const of_place = bank(place);
         auto const reads_plan = of_place != nullptr && pass == graph_pass::injected;
-        return {pass, shapes(), of_place, reads_plan ? &plan(place.site, frames) : nullptr};
+        return {pass, shapes(), of_place, reads_plan ? &plan(place.site, frames) : nullptr,
+                scales(place, pass, frames)};
     }
 };
 

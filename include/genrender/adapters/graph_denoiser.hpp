@@ -39,6 +39,7 @@ struct graph_network {
     prediction predicted = prediction::epsilon; ///< what the network's output stands for
     std::vector<float> branch_weights = {1.0F}; ///< of each branch's output; {1 - s, s} is guidance of scale s
     latent_layout layout = latent_layout::channels_first; ///< of the graphs' input and output
+    bool scales_logits = false; ///< whether every module takes `site.scaled` of its queries; else such runs are refused
 };
 
 /// A view [frames, channels, height, width] of latents that lie in a graph's layout.
@@ -65,7 +66,7 @@ inline strided_view<float, 4> latents_view(float* values, latent_layout layout, 
 /// `typename Graph::tensor_type`          | copyable      | a value of a graph under construction
 /// `typename Graph::feature_io_type`      |               | a graph_feature_io
 /// `Graph::make_feature_io(device, shapes,| a unique_ptr  | the fixed tensors of a run
-///  sites)`                               |               |
+///  sites, scales_logits)`                |               |
 /// `Graph(device, io, key)`               | Graph         | one without nodes, for a graph_key; outlived by io
 /// `graph.add_input(name, shape)`         | `tensor_type` | a float input of a row-major shape, its last axis innermost
 /// `graph.finish(output)`                 | any           | no node comes any more; output is what `read` reads
@@ -109,7 +110,8 @@ public:
     void prepare(run_shapes const& shapes) const {
         state_->graphs.clear();
         state_->io.reset();
-        state_->io = Graph::make_feature_io(state_->device, shapes, state_->network.sites);
+        auto const& network = state_->network;
+        state_->io = Graph::make_feature_io(state_->device, shapes, network.sites, network.scales_logits);
     }
 
     /// The clean estimate x0 of z, both [frames, channels, height, width], as denoiser says. Throws value_error before

@@ -41,20 +41,25 @@ struct graph_key {
 /// `memory.bank(site, shapes)`           | `Memory::bank_type`     | its tensors `f_KF` and `F_KF` of a site
 /// `memory.plan(frames, tokens, shapes)` | `Memory::plan_type`     | has `write_rows(rows, alpha)` and
 ///                                       |                         | `write_mask(left_out)`, for such a stack
+/// `memory.scales(frames)`               | `Memory::scales_type`   | has `write(scales)`, a number for each of so many
+///                                       |                         | frames; asked for where logits are scaled
 template <class Memory>
 class graph_feature_io {
 public:
     using features_type = typename Memory::features_type; ///< handle of features
     using bank_type = typename Memory::bank_type;         ///< f_KF and F_KF of a place
     using plan_type = typename Memory::plan_type;         ///< rows and mask of a stack of frames at a site
+    using scales_type = typename Memory::scales_type;     ///< of the logits of a stack of frames at a site
 
-    /// For the shapes of a run and the denoiser's sites. Throws value_error if the run asks for sources beyond eqs. 1, 3
-    /// and 5, keeps several banks at a time or names a site that there is not; and what the memory throws.
-    graph_feature_io(Memory memory, run_shapes shapes, std::span<attention_site const> sites)
+    /// For the shapes of a run and the denoiser's sites, of which all modules scale their queries if `scales_logits`.
+    /// Throws value_error if the run asks for sources beyond eqs. 1, 3 and 5, for scales without `scales_logits`, keeps
+    /// several banks at a time or names a site that there is not; and what the memory throws.
+    graph_feature_io(Memory memory, run_shapes shapes, std::span<attention_site const> sites,
+                     bool scales_logits = false)
         : memory_(std::move(memory)), shapes_(std::move(shapes)), sites_(sites.begin(), sites.end()) {
         constexpr auto here = "graph_feature_io";
         require_value(!shapes_.lists_sources, here, "shapes.lists_sources", "true", "a method that lists no sources");
-        require_abilities(here, {}, shapes_);
+        require_abilities(here, {.scales_logits = scales_logits}, shapes_);
         require_value(shapes_.banks == 1, here, "shapes.banks", shapes_.banks, "one bank at a time");
         for (auto const place : shapes_.places) {
             require_value(place.site.value < sites_.size(), here, "shapes.places", place.site.value, "a site");
@@ -71,7 +76,7 @@ public:
     /// Which pass a processor runs: the one whose graph the call takes.
     template <class Processor>
     graph_pass pass_of(Processor const& processor, std::span<frame_index const> frames) const {
-        return graph_pass_of<features_type, float>(processor, shapes_, frames);
+        return graph_pass_of<features_type, float>(processor, shapes_, frames, able());
     }
 
     /// f_KF and F_KF of a place; null where it takes no part.
@@ -90,6 +95,21 @@ public:
         return plans_.try_emplace({site, frames}, memory_.plan(frames, tokens, shapes_)).first->second;
     }
 
+    /// What the logits of a place are multiplied by in a pass, for stacks of so many frames: the same tensor for all
+    /// branches, made when first asked for. Null where nothing is scaled.
+    scales_type* scales(attention_place place, graph_pass pass, std::size_t frames) {
+        auto const joins = pass == graph_pass::keyframe ? shapes_.attends_to_stack
+                                                        : pass == graph_pass::injected && shapes_.joins_keyframes;
+        if (!shapes_.scales_logits || !joins || bank(place) == nullptr) {
+            return nullptr;
+        }
+        auto const found = scales_.find({place.site, frames});
+        if (found != scales_.end()) {
+            return &found->second;
+        }
+        return &scales_.try_emplace({place.site, frames}, memory_.scales(frames)).first->second;
+    }
+
     /// Before the graph of a pass and branch runs: writes what the processor gives its modules. Throws value_error if
     /// that is not what the shapes said, or a row has more entries than shapes.row_width.
     template <class Processor>
@@ -98,7 +118,7 @@ public:
             if (place.branch != branch) {
                 continue;
             }
-            auto const in = inputs_at<features_type, float>(processor, place, frames);
+            auto const in = inputs_for<features_type, float>(processor, place, frames, able());
             require_inputs(in, pass, shapes_, frames);
             auto const is_ours = (in.f_KF == nullptr || *in.f_KF == features_type{bank.f_KF}) &&
                                  (in.F_KF == nullptr || *in.F_KF == features_type{bank.F_KF});
@@ -110,6 +130,9 @@ public:
             if (in.F_KF != nullptr) {
                 plan(place.site, frames.size()).write_rows(in.rows, in.alpha);
             }
+            if (auto* const scales_of_place = scales(place, pass, frames.size())) {
+                scales_of_place->write(in.scales.empty() ? std::vector<double>(frames.size(), 1) : in.scales);
+            }
         }
     }
 
@@ -117,18 +140,23 @@ public:
     template <class Processor>
     void record(Processor const& processor, std::uint32_t branch, std::span<frame_index const> frames) const {
         for (auto const& [place, bank] : banks_) {
-            if (place.branch == branch && inputs_at<features_type, float>(processor, place, frames).is_recorded) {
+            if (place.branch == branch &&
+                inputs_for<features_type, float>(processor, place, frames, able()).is_recorded) {
                 record_features(processor, place, features_type{bank.f_KF}, features_type{bank.F_KF});
             }
         }
     }
 
 private:
+    /// Of this run: what its graphs were not built for is refused.
+    graph_abilities able() const { return {.scales_logits = shapes_.scales_logits}; }
+
     Memory memory_;
     run_shapes shapes_;
     std::vector<attention_site> sites_;
     std::map<attention_place, bank_type> banks_;
     std::map<std::pair<site_index, std::size_t>, plan_type> plans_;
+    std::map<std::pair<site_index, std::size_t>, scales_type> scales_;
     mutable std::mutex mutex_;
 };
 

@@ -48,8 +48,9 @@ public:
 
     /// The fixed tensors of a run. Throws as openvino_feature_io does.
     static std::unique_ptr<openvino_feature_io> make_feature_io(openvino_device const&, run_shapes const& shapes,
-                                                                std::span<attention_site const> sites) {
-        return std::make_unique<openvino_feature_io>(shapes, sites);
+                                                                std::span<attention_site const> sites,
+                                                                bool scales_logits = false) {
+        return std::make_unique<openvino_feature_io>(shapes, sites, scales_logits);
     }
 
     /// One without nodes. `io` outlives it.

@@ -121,11 +121,22 @@ private:
     std::size_t writes_ = 0;
 };
 
+/// What the logits of each frame of a stack are multiplied by.
+struct openvino_scales {
+    ov::Tensor tensor; ///< f32 [frames, 1, 1]
+    /// Writes them, one a frame.
+    void write(std::span<double const> scales) {
+        std::transform(scales.begin(), scales.end(), tensor.data<float>(),
+                       [](double scale) { return static_cast<float>(scale); });
+    }
+};
+
 /// Makes the tensors of a graph_feature_io in host memory.
 struct openvino_memory {
     using features_type = openvino_features; ///< a handle
     using bank_type = openvino_bank;         ///< f_KF and F_KF
     using plan_type = openvino_plan;         ///< rows and masks
+    using scales_type = openvino_scales;     ///< of logits
 
     /// Features of the keyframes of a site.
     openvino_bank bank(attention_site const& site, run_shapes const& shapes) const {
@@ -137,6 +148,8 @@ struct openvino_memory {
     openvino_plan plan(std::size_t frames, std::size_t tokens, run_shapes const& shapes) const {
         return {frames, tokens, shapes};
     }
+    /// Scales of a stack of frames.
+    openvino_scales scales(std::size_t frames) const { return {ov::Tensor(ov::element::f32, {frames, 1, 1})}; }
 };
 
 } // namespace genrender::adapters

@@ -80,9 +80,9 @@ private:
 class openvino_site {
 public:
     /// Of a pass; extra inputs and outputs go to `ports` under names that begin with `name`. `bank` and `plan` are null
-    /// where the module is left plain.
+    /// where the module is left plain, `scales` where its logits are not scaled.
     openvino_site(graph_pass pass, run_shapes const& shapes, openvino_bank const* bank, openvino_plan const* plan,
-                  openvino_ports& ports, std::string name)
+                  openvino_scales const* scales, openvino_ports& ports, std::string name)
         : is_keyframe_(pass == graph_pass::keyframe && bank != nullptr),
           attends_to_stack_(is_keyframe_ && shapes.attends_to_stack), bank_(bank), ports_(&ports),
           name_(std::move(name)) {
@@ -92,6 +92,9 @@ public:
                 mask_ = ports.add_input(name_ + ".mask", plan->mask);
             }
         }
+        if (scales != nullptr) {
+            scales_ = ports.add_input(name_ + ".scales", scales->tensor);
+        }
         mixes_ = pass == graph_pass::injected && bank != nullptr && shapes.mixes_rows ? plan : nullptr;
     }
 
@@ -100,6 +103,19 @@ public:
     openvino_value queries(openvino_value const& f) const {
         auto const& s = f.get_shape();
         return attends_to_stack_ ? reshaped(f, {1, s[0] * s[1], s[2]}) : f;
+    }
+
+    /// What the module projected of `queries`, f32 [.., .., channels], times what the logits of each frame are multiplied by
+    /// (the length-corrected temperature); Q itself where nothing is scaled. A network of which all modules take it says so
+    /// (graph_network::scales_logits).
+    openvino_value scaled(openvino_value const& Q) const {
+        if (!scales_) {
+            return Q;
+        }
+        auto const& s = Q.get_shape();
+        auto const frames = scales_->get_shape()[0];
+        auto const by_frame = reshaped(Q, {frames, s[0] * s[1] / frames, s[2]});
+        return reshaped(std::make_shared<ov::op::v1::Multiply>(by_frame, *scales_), s);
     }
 
     /// The tokens that keys and values are of: those of `queries`, or each frame's own and then the keyframes' (eq. 5),
@@ -175,6 +191,7 @@ private:
     std::string name_;
     std::optional<openvino_value> f_KF_;
     std::optional<openvino_value> mask_;
+    std::optional<openvino_value> scales_;
     openvino_plan const* mixes_ = nullptr;
 };
 
@@ -183,17 +200,21 @@ private:
 class openvino_feature_io : public graph_feature_io<openvino_memory> {
 public:
     /// For the shapes of a run and the denoiser's sites. Throws as graph_feature_io does.
-    openvino_feature_io(run_shapes shapes, std::span<attention_site const> sites)
-        : graph_feature_io({}, std::move(shapes), sites) {}
+    openvino_feature_io(run_shapes shapes, std::span<attention_site const> sites, bool scales_logits = false)
+        : graph_feature_io({}, std::move(shapes), sites, scales_logits) {}
 
     /// The module at a place, for building a model of a pass with so many frames. Extra inputs and outputs are named
     /// `genrender.<site>.<what>`.
     openvino_site site(attention_place place, graph_pass pass, std::size_t frames, openvino_ports& ports) {
         auto const* const of_place = bank(place);
         auto const reads_plan = of_place != nullptr && pass == graph_pass::injected;
-        return {pass,     shapes(),
-                of_place, reads_plan ? &plan(place.site, frames) : nullptr,
-                ports,    "genrender." + std::to_string(place.site.value)};
+        return {pass,
+                shapes(),
+                of_place,
+                reads_plan ? &plan(place.site, frames) : nullptr,
+                scales(place, pass, frames),
+                ports,
+                "genrender." + std::to_string(place.site.value)};
     }
 };
 

@@ -57,6 +57,8 @@ void require_inputs(feature_inputs<Features, Real> const& in, graph_pass pass, r
                   "require_inputs", "in", "of another pass", "what shapes and pass say of every place");
     require_value(!is_keyframe || frames.size() == shapes.keyframes, "require_inputs", "frames.size()", frames.size(),
                   "as many keyframes in every step as shapes say");
+    require_value(in.scales.empty() || in.scales.size() == frames.size(), "require_inputs", "in.scales.size()",
+                  in.scales.size(), "one for each frame");
 }
 
 /// Writes what eq. 5 adds to the products of queries and keys, out [frames, tokens (1 + m)]: minus infinity along the
