@@ -12,13 +12,20 @@ genrender.<number>.<what>, as genrender/adapters/openvino_site.hpp names them; g
     injected   inputs f_KF, F_KF [keyframes, tokens, channels] (eqs. 5, 6); index int32 [frames tokens, width], weights
                [frames tokens, 1, width], own [frames, tokens, 1], the padded rows of eq. 6
 
+With --scales-logits both have an input genrender.length_correction [1]: the logits of joined keys are multiplied by
+(ln keys / ln own keys) to this power. An output genrender.scales_logits [1] gives it back and so says that it is honoured.
+
 No keyframe is left out (the default, injection_settings::keeps_own_copy).
 """
 import argparse
+import math
 
 import numpy
 import onnx
 from onnx import TensorProto, helper, numpy_helper
+
+
+POWER, HONOURED = "genrender.length_correction", "genrender.scales_logits"
 
 
 def modules_of(graph):
@@ -27,7 +34,7 @@ def modules_of(graph):
     return [name.removesuffix("to_q/MatMul") for name in names if name.endswith("attn1/to_q/MatMul")]
 
 
-def add_feature_io(model, pass_name, keyframes, width, sites="up_blocks"):
+def add_feature_io(model, pass_name, keyframes, width, sites="up_blocks", scales_logits=False):
     """Changes a model with known shapes in place; returns the numbers and names of the modules that take part."""
     graph = onnx.shape_inference.infer_shapes(model, data_prop=True).graph
     shapes = {info.name: [d.dim_value for d in info.type.tensor_type.shape.dim]
@@ -71,6 +78,17 @@ def add_feature_io(model, pass_name, keyframes, width, sites="up_blocks"):
         for node in own_projection:
             node.input[0] = sources
 
+        if scales_logits:
+            query = by_name.get(prefix + "to_q/Add", by_name[first])  # an Add where the projection has a bias
+            keys = frames * tokens if pass_name == "keyframe" else (1 + keyframes) * tokens
+            ratio = math.log(keys) / math.log(tokens) if tokens > 1 else 1.0
+            graph.initializer.append(numpy_helper.from_array(numpy.array([ratio], numpy.float32), at + "ratio"))
+            scale = add("Pow", [at + "ratio", POWER], "scale", query.name)
+            Q = query.output[0]
+            query.output[0] = at + "Q"
+            behind = next(i for i, n in enumerate(graph.node) if n.name == query.name) + 1
+            graph.node.insert(behind, helper.make_node("Mul", [at + "Q", scale], [Q], at + "scaled"))
+
         F = last.output[0]
         if pass_name == "keyframe":
             for what, value in (("f", f), ("F", F)):
@@ -95,6 +113,10 @@ def add_feature_io(model, pass_name, keyframes, width, sites="up_blocks"):
                     node.input[i] = out
     if not taking_part:
         raise ValueError(f"add_feature_io: no self-attention module is named {sites}, expected some of {modules_of(graph)}")
+    if scales_logits:
+        graph.input.append(helper.make_tensor_value_info(POWER, TensorProto.FLOAT, [1]))
+        graph.node.append(helper.make_node("Identity", [POWER], [HONOURED], HONOURED))
+        graph.output.append(helper.make_tensor_value_info(HONOURED, TensorProto.FLOAT, [1]))
     del graph.value_info[:]
     onnx.checker.check_model(model)
     return taking_part
@@ -108,8 +130,10 @@ if __name__ == "__main__":
     parser.add_argument("--keyframes", type=int, required=True)
     parser.add_argument("--width", type=int, default=1)
     parser.add_argument("--sites", default="up_blocks")
+    parser.add_argument("--scales-logits", action="store_true")
     given = parser.parse_args()
     changed = onnx.load(given.model)
-    for number, prefix in add_feature_io(changed, given.pass_name, given.keyframes, given.width, given.sites):
+    for number, prefix in add_feature_io(changed, given.pass_name, given.keyframes, given.width, given.sites,
+                                         given.scales_logits):
         print(number, prefix)
     onnx.save(changed, given.out)

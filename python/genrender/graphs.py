@@ -4,6 +4,8 @@
 The graphs have the inputs and outputs that genrender.add_feature_io adds; `render` gives the latents of an animation.
 """
 
+import math
+
 import numpy as np
 
 from . import NoiseSchedule, draw_keyframes, karras_schedule, sample, scalings
@@ -16,8 +18,19 @@ class Run:
 
     def __init__(self, maps, graph, grid, **settings):
         self.__dict__.update(settings)
-        self.graph, self.rows = graph, Rows(maps, grid, self.average)
+        self.run_graph, self.rows = graph, Rows(maps, grid, self.average)
         self.estimates = Estimates(self.rows, self.steps, self.seed, self.consensus, self.normalization)
+
+    def graph(self, name, frames, branch, inputs):
+        """The outputs of a graph, which is given the power of the temperature where there is one."""
+        if not self.length_correction:
+            return self.run_graph(name, frames, branch, inputs)
+        power = np.array([self.length_correction], np.float32)
+        outputs = self.run_graph(name, frames, branch, inputs | {"genrender.length_correction": power})
+        if "genrender.scales_logits" not in outputs:
+            raise ValueError(f"render: length_correction is {self.length_correction}, expected 0 for a graph without the output "
+                             f"genrender.scales_logits (add_feature_io --scales-logits)")
+        return outputs
 
     def D(self, z, sigma, step):
         """The clean estimates of all frames of z [frames, channels, height, width]: the body of alg. 1's loop."""
@@ -53,7 +66,7 @@ class Run:
 
 def render(maps, graph, *, channels, grid, preset="vivid", steps=50, seed=0, keyframes=None, frames_per_call=1, alpha=0.7,
            latents_grid_alpha=None, branch_weights=(1,), prediction="epsilon", schedule=None, sampler="euler", consensus=None,
-           normalization=None, average="quality", noise="uv", width=None, observer=None):
+           normalization=None, average="quality", noise="uv", width=None, observer=None, length_correction=0.0):
     """Consistent clean latents of all frames [frames, channels, *grid], as a NumPy array of float32.
 
     `graph(name, frames, branch, inputs)` runs the graph `name`, "keyframe" or "injected", for these numbers of frames and a
@@ -62,18 +75,21 @@ def render(maps, graph, *, channels, grid, preset="vivid", steps=50, seed=0, key
     takes, and leaves out inputs that the graph does not have. It is called with `keyframes` frames or `frames_per_call`, the
     last time of a pass with what is left. Of `keyframes` None is 4, or all frames if these are fewer. `width` is that of the
     padded rows, `keyframes` where it is None. `branch_weights` are of the outputs of all branches: (1 - s, s) is guidance of
-    scale s. `schedule` is a NoiseSchedule, of Stable Diffusion where it is None. `preset`, and `latents_grid_alpha`, `consensus`
-    and `normalization`, are those of genrender.diffusers.render. Raises ValueError for what does not fit.
+    scale s. `schedule` is a NoiseSchedule, of Stable Diffusion where it is None. `preset`, and `latents_grid_alpha`, `consensus`,
+    `normalization` and `length_correction`, are those of genrender.diffusers.render; a `length_correction` above 0 takes graphs of
+    add_feature_io's scales_logits. Raises ValueError for what does not fit.
     """
     keyframes = min(4, maps.frames) if keyframes is None else keyframes
     for name, value in (("keyframes", keyframes), ("frames_per_call", frames_per_call), ("branches", len(branch_weights))):
         if value < 1:
             raise ValueError(f"render: {name} is {value}, expected at least 1")
+    if not (math.isfinite(length_correction) and length_correction >= 0):
+        raise ValueError(f"render: length_correction is {length_correction}, expected a finite number, 0 or more")
     schedule = NoiseSchedule.scaled_linear() if schedule is None else schedule
     of_preset = with_preset(preset, latents_grid_alpha=latents_grid_alpha, consensus=consensus, normalization=normalization)
     run = Run(maps, graph, grid, keyframes=keyframes, seed=seed, steps=steps, frames_per_call=frames_per_call, alpha=alpha,
               branch_weights=branch_weights, prediction=prediction, schedule=schedule, average=average,
-              width=keyframes if width is None else width, **of_preset)
+              width=keyframes if width is None else width, length_correction=length_correction, **of_preset)
     sigmas = karras_schedule(steps, schedule.sigma_min, schedule.sigma_max)
     z = np.float32(sigmas[0]) * maps.initial_noise(channels, *grid, seed=seed, kind=noise)
     return sample(sampler, run.D, z, sigmas, observer)

@@ -44,20 +44,24 @@ def latents_of(F, coarse):
 
 
 class Network:
-    """F = tanh(z t / 500 + branch) at both resolutions, mixed as it is told; v is the sum. Its modules are numbered 2 and 5."""
+    """F = tanh((1 + power) z t / 500 + branch) at both resolutions, mixed as it is told; v is the sum. Its modules are numbered 2
+    and 5. The power is that of the temperature, which it takes unless it is told not to."""
 
     MODULES = {2: False, 5: True}
 
-    def __init__(self):
-        self.calls = []
+    def __init__(self, scales_logits=True):
+        self.calls, self.scales_logits = [], scales_logits
 
     def __call__(self, name, frames, branch, inputs):
         self.calls.append((name, list(frames), branch))
         z, out = inputs["z"], {"v": 0}
+        power = inputs.get("genrender.length_correction") if self.scales_logits else None
+        if power is not None:
+            out["genrender.scales_logits"] = power
         for number, coarse in self.MODULES.items():
             at = f"genrender.{number}."
             f = tokens_of(z, coarse)
-            F = np.tanh(f * inputs["t"] / 500 + branch)
+            F = np.tanh(f * (inputs["t"] if power is None else inputs["t"] * (1 + power)) / 500 + branch)
             if name == "keyframe":
                 out |= {at + "f": f, at + "F": F}
             else:
@@ -69,7 +73,7 @@ class Network:
         return out
 
 
-def written_out(steps, seed, normalization, consensus=False, latents_grid_alpha=1):
+def written_out(steps, seed, normalization, consensus=False, latents_grid_alpha=1, power=0):
     """The same by loops over frames, without the package's graphs."""
     of, schedule = maps(), genrender.NoiseSchedule.scaled_linear()
     sigmas = genrender.karras_schedule(steps, schedule.sigma_min, schedule.sigma_max)
@@ -83,7 +87,7 @@ def written_out(steps, seed, normalization, consensus=False, latents_grid_alpha=
         for branch, weight in enumerate(WEIGHTS):
             for number, coarse in Network.MODULES.items():
                 f = tokens_of(c_in * z, coarse)
-                F = np.tanh(f * t / 500 + branch)
+                F = np.tanh(f * t * (1 + power) / 500 + branch)
                 for i in range(FRAMES):
                     index, weights, own = correspondences[coarse].padded_rows(
                         KF, [i], ALPHA if coarse else ALPHA * latents_grid_alpha)
@@ -109,7 +113,8 @@ def rendered(network, **settings):
 
 class GraphsTest(unittest.TestCase):
     def test_latents_are_those_of_the_equations_written_out(self):
-        for settings, told in ((("mean",), {}), (("none", True, 0), {"preset": "vivid"}), (("none",), {"normalization": "none"})):
+        for settings, told in ((("mean",), {}), (("none", True, 0), {"preset": "vivid"}),
+                               (("mean", False, 1, 2), {"length_correction": 2}), (("none",), {"normalization": "none"})):
             expected, found = written_out(3, 4, *settings), rendered(Network(), **told)
             self.assertEqual(found.shape, (FRAMES, CHANNELS, *GRID))
             self.assertEqual(found.dtype, np.float32)
@@ -132,9 +137,17 @@ class GraphsTest(unittest.TestCase):
         for settings, expected in (({"keyframes": 0}, "keyframes is 0, expected at least 1"),
                                    ({"frames_per_call": 0}, "frames_per_call is 0, expected at least 1"),
                                    ({"branch_weights": ()}, "branches is 0, expected at least 1"),
+                                   ({"length_correction": -1}, "length_correction is -1, expected a finite number, 0 or more"),
+                                   ({"length_correction": float("nan")}, "length_correction is nan, expected a finite number"),
                                    ({"keyframes": 9}, "count is 9, expected 1 to the animation's 5 frames")):
             with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                 rendered(Network(), **settings)
+
+    def test_a_temperature_is_refused_by_graphs_that_do_not_say_they_scale(self):
+        with self.assertRaisesRegex(ValueError, "length_correction is 1, expected 0 for a graph without the output "
+                                                "genrender.scales_logits"):
+            rendered(Network(scales_logits=False), length_correction=1)
+        rendered(Network(scales_logits=False))
 
     def test_rows_of_a_grid_that_is_no_halved_one_are_refused(self):
         rows = Rows(maps(), GRID)

@@ -21,6 +21,6 @@ pipe = SimpleNamespace(
     encode_prompt=lambda *_, **__: (prompt, empty))
 for network in (pipe.unet, pipe.controlnet):
     network.forward = case.timed(network.forward)
-names = ("height", "width", "steps", "seed", "keyframes", "frames_per_call", "guidance_scale")
+names = ("height", "width", "steps", "seed", "keyframes", "frames_per_call", "guidance_scale", "length_correction")
 case.finish(lambda: render(pipe, case.maps, "", hint=torch.from_numpy(case.hint), preset="plain",
                            **{name: settings[name] for name in names}).numpy())

@@ -22,10 +22,12 @@ def graph(name, frames, branch, inputs):
 
 m, last = settings["keyframes"], len(case.hint) % settings["frames_per_call"]
 for name, frames in (("keyframe", m), ("injected", settings["frames_per_call"]), ("injected", last)):
-    file = network.exported(name, frames, m, (settings["channels"], *settings["grid"]), case.prompts[0].shape, case.hint.shape[1:])
+    file = network.exported(name, frames, m, (settings["channels"], *settings["grid"]), case.prompts[0].shape, case.hint.shape[1:],
+                            scales_logits=settings["length_correction"] > 0)
     sessions[name, frames] = onnxruntime.InferenceSession(file, options, providers=["CPUExecutionProvider"])
 scale = settings["guidance_scale"]
 case.finish(lambda: render(
     case.maps, case.timed(graph), preset="plain", branch_weights=(1 - scale, scale),
     schedule=NoiseSchedule.scaled_linear(*settings["betas"]),
-    **{name: settings[name] for name in ("channels", "grid", "steps", "seed", "keyframes", "frames_per_call", "prediction")}))
+    **{name: settings[name] for name in ("channels", "grid", "steps", "seed", "keyframes", "frames_per_call", "prediction",
+                                         "length_correction")}))

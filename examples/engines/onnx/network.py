@@ -23,7 +23,7 @@ class Network(torch.nn.Module):
         down, middle = self.controlnet(z, t, prompt, hint, return_dict=False)
         return self.unet(z, t, prompt, down_block_additional_residuals=down, mid_block_additional_residual=middle).sample
 
-    def exported(self, pass_name, frames, keyframes, latent, prompt, hint):
+    def exported(self, pass_name, frames, keyframes, latent, prompt, hint, scales_logits):
         """The graph of a pass for so many frames, serialised; shapes are those of one frame."""
         given = [torch.zeros(frames, *shape) for shape in (latent, prompt, hint)]
         with tempfile.TemporaryDirectory() as folder, torch.no_grad(), warnings.catch_warnings(action="ignore"):
@@ -31,5 +31,5 @@ class Network(torch.nn.Module):
             torch.onnx.export(self, (given[0], torch.zeros(1), *given[1:]), file, dynamo=False, opset_version=17,
                               input_names=["z", "t", "prompt", "hint"], output_names=["v"])
             model = onnx.load(file)
-        add_feature_io(model, pass_name, keyframes, keyframes)
+        add_feature_io(model, pass_name, keyframes, keyframes, scales_logits=scales_logits)
         return model.SerializeToString()

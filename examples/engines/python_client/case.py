@@ -14,7 +14,7 @@ from safetensors.numpy import load_file, save_file
 class Case:
     """`maps`, `hint` [frames, channels, height, width], `prompts` (the negative one, the prompt) [tokens, channels], `weights`,
     the folder of the networks, and `settings`: height, width, channels, grid, steps, keyframes, frames_per_call, seed,
-    guidance_scale, prediction, betas (the first, the last, their number)."""
+    guidance_scale, length_correction, prediction, betas (the first, the last, their number)."""
 
     def __init__(self):
         self.folder, self.weights = map(pathlib.Path, sys.argv[1:3])

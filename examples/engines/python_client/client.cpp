@@ -70,6 +70,7 @@ void write_case(std::filesystem::path const& folder, engine_case const& given) {
                                   {"frames_per_call", given.settings.frames_per_call},
                                   {"seed", given.settings.noise.seed},
                                   {"guidance_scale", told.guidance_scale},
+                                  {"length_correction", given.settings.injection.length_correction},
                                   {"prediction", name_of(config.prediction_type)},
                                   {"betas", {config.beta_start, config.beta_end, config.num_train_timesteps}}};
     std::ofstream(folder / "case.json") << settings;
