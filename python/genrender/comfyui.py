@@ -116,7 +116,7 @@ class Patches:
         if self.is_recording:
             self.kept[at, "F_KF"] = F.flatten(1, 2)
             return n
-        alpha = self.alpha * (self.of_preset["latents_grid_alpha"] if self.blending.is_latents(F.shape[2]) else 1)
+        alpha = self.blending.alpha_at(F.shape[2], self.alpha, self.of_preset["latents_grid_alpha"])
         if alpha == 0:
             return n
         rows = self.blending.rows(F.shape[2], self.keyframes, self.frames, alpha, n.device)

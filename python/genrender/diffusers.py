@@ -12,7 +12,7 @@ import torch.nn.functional as nn
 
 from . import NoiseSchedule, draw_keyframes, karras_schedule, sample, scalings
 from .blending import Blending, mix_keeping_variance
-from .estimates import Estimates, with_preset
+from .estimates import Estimates, require_length_correction, with_preset
 
 
 class SelfAttention:
@@ -60,8 +60,7 @@ class SelfAttention:
         else:
             F_hat = attend(heads, Q, K, V)
         alpha = run.alpha(run.step, self.name) if callable(run.alpha) else run.alpha
-        if run.blending.is_latents(Q.shape[2]):
-            alpha *= run.latents_grid_alpha
+        alpha = run.blending.alpha_at(Q.shape[2], alpha, run.latents_grid_alpha)
         if not run.post_attention or alpha == 0:
             return F_hat
         rows = run.blending.rows(Q.shape[2], run.keyframes, run.frames, alpha, Q.device)
@@ -193,8 +192,7 @@ def render(pipe, maps, prompt, *, height, width, preset="vivid", negative_prompt
     for name, value, least in (("keyframes", keyframes, 0), ("frames_per_call", frames_per_call, 1)):
         if value < least:
             raise ValueError(f"render: {name} is {value}, expected at least {least}")
-    if not (math.isfinite(length_correction) and length_correction >= 0):
-        raise ValueError(f"render: length_correction is {length_correction}, expected a finite number, 0 or more")
+    require_length_correction(length_correction)
     if variance not in ("none", "total", "sources"):
         raise ValueError(f"render: variance is {variance}, expected one of none, total, sources")
     of_preset = with_preset(preset, latents_grid_alpha=latents_grid_alpha, consensus=consensus, normalization=normalization)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The presets of a run, and what happens to the clean estimates of all frames after the network has given them."""
+"""Settings of a run that all ways in share, and what happens to the clean estimates after the network has given them."""
+
+import math
 
 from . import Consensus, normalize_latents
 
@@ -18,6 +20,12 @@ def with_preset(preset, **settings):
     if not 0 <= of["latents_grid_alpha"] <= 1:
         raise ValueError(f"render: latents_grid_alpha is {of['latents_grid_alpha']}, expected a share in [0, 1]")
     return of
+
+
+def require_length_correction(power):
+    """Raises ValueError, in the name of render, for a power that is negative or not finite."""
+    if not (math.isfinite(power) and power >= 0):
+        raise ValueError(f"render: length_correction is {power}, expected a finite number, 0 or more")
 
 
 class Estimates:

@@ -4,12 +4,10 @@
 The graphs have the inputs and outputs that genrender.add_feature_io adds; `render` gives the latents of an animation.
 """
 
-import math
-
 import numpy as np
 
 from . import NoiseSchedule, draw_keyframes, karras_schedule, sample, scalings
-from .estimates import Estimates, with_preset
+from .estimates import Estimates, require_length_correction, with_preset
 from .rows import Rows
 
 
@@ -57,7 +55,7 @@ class Run:
             if not name.startswith("genrender.") or not name.endswith(".f"):
                 continue
             at, tokens = name.removesuffix("f"), f.shape[1]
-            alpha = self.alpha * (self.latents_grid_alpha if self.rows.is_latents(tokens) else 1)
+            alpha = self.rows.alpha_at(tokens, self.alpha, self.latents_grid_alpha)
             index, weights, own = self.rows.rows(tokens, keyframes, frames, alpha, self.width)
             inputs |= {at + "f_KF": f, at + "F_KF": recorded[at + "F"], at + "index": index.reshape(-1, self.width),
                        at + "weights": weights.reshape(-1, 1, self.width), at + "own": own[..., None]}
@@ -83,8 +81,7 @@ def render(maps, graph, *, channels, grid, preset="vivid", steps=50, seed=0, key
     for name, value in (("keyframes", keyframes), ("frames_per_call", frames_per_call), ("branches", len(branch_weights))):
         if value < 1:
             raise ValueError(f"render: {name} is {value}, expected at least 1")
-    if not (math.isfinite(length_correction) and length_correction >= 0):
-        raise ValueError(f"render: length_correction is {length_correction}, expected a finite number, 0 or more")
+    require_length_correction(length_correction)
     schedule = NoiseSchedule.scaled_linear() if schedule is None else schedule
     of_preset = with_preset(preset, latents_grid_alpha=latents_grid_alpha, consensus=consensus, normalization=normalization)
     run = Run(maps, graph, grid, keyframes=keyframes, seed=seed, steps=steps, frames_per_call=frames_per_call, alpha=alpha,

@@ -20,9 +20,9 @@ class Rows:
                              "halved a number of times")
         return height, width
 
-    def is_latents(self, tokens):
-        """Whether a feature map of so many tokens is as fine as the latents."""
-        return tokens == self.latent_grid[0] * self.latent_grid[1]
+    def alpha_at(self, tokens, alpha, latents_grid_alpha):
+        """alpha of eq. 6 for feature maps of so many tokens, times `latents_grid_alpha` where these are as fine as the latents."""
+        return alpha * latents_grid_alpha if tokens == self.latent_grid[0] * self.latent_grid[1] else alpha
 
     def correspondence(self, grid):
         """Which token of which frame shows which surface point, on a grid of this height and width; made once."""

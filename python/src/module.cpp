@@ -390,12 +390,15 @@ NB_MODULE(_genrender, m) {
              "where frames attend to their own tokens and the keyframes' (eq. 5); without `frames` [keyframes, "
              "keyframes * tokens], where keyframes attend to each other (eq. 3). Its logarithm is added to logits.");
 
+    consensus_settings<float> const usual;
     nb::class_<animation_consensus>(
         m, "Consensus",
         "Clean estimates of all frames agree along the surfaces, and where no object is at their place on the screen.")
-        .def(nb::new_(&make_consensus), "correspondence"_a, "steps"_a, nb::kw_only(), "seed"_a = 0, "sources"_a = 16,
-             "window_begin"_a = 0.0F, "window_end"_a = 0.7F, "strength"_a = 1.0F, "most_gain"_a = 2.0F,
-             "fades_at_silhouettes"_a = true, "agrees_on_background"_a = true,
+        .def(nb::new_(&make_consensus), "correspondence"_a, "steps"_a, nb::kw_only(), "seed"_a = 0,
+             "sources"_a = usual.sources.count, "window_begin"_a = usual.window_begin,
+             "window_end"_a = usual.window_end, "strength"_a = 1.0F, "most_gain"_a = usual.most_gain,
+             "fades_at_silhouettes"_a = usual.fades_at_silhouettes,
+             "agrees_on_background"_a = usual.agrees_on_background,
              "Of a run of `steps` steps whose latents have the grid of `correspondence`. It is a mean over `sources` "
              "frames, drawn anew each step, or all frames if these are fewer; along the surfaces in the steps whose "
              "share of all lies in [window_begin, window_end). A channel's deviation is multiplied by `most_gain` at "
